@@ -1,0 +1,5 @@
+"""``python -m geotween``."""
+
+from geotween.cli import main
+
+main(prog_name="geotween")

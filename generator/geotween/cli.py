@@ -1,0 +1,181 @@
+"""The command line: parse, call, print."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from geotween import __version__
+
+if TYPE_CHECKING:
+    from geotween.data.load import Scene
+    from geotween.data.problems import Problem
+    from geotween.export.build import Rendered
+    from geotween.scene.errors import Fault
+
+DONE, PROBLEMS, BAD_SCENE = 0, 1, 2
+
+_SCENES = click.argument(
+    "scenes", nargs=-1, required=True, metavar="SCENE...", type=click.Path(path_type=Path)
+)
+_QUIET = click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+
+
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Exit status: 0 done, 1 the scene or its motion has problems, 2 usage or a bad scene.",
+)
+@click.version_option(__version__, prog_name="geotween", message="%(prog)s %(version)s")
+def main() -> None:
+    r"""Turn polygon sets at successive times into an animated map in one file.
+
+    \b
+    Examples:
+      geotween build fire.yaml -o public        fire.html, fire.svg and index.html
+      geotween build scenes/*.yaml -o public -q
+      geotween check fire.yaml                  what is wrong with it, if anything
+      geotween schema > scene.schema.json       for your editor
+    """
+
+
+@main.command()
+@_SCENES
+@click.option("-o", "--out", required=True, metavar="DIR", help="Folder for the files.")
+@click.option(
+    "--format", "formats", default="html,svg", show_default=True, metavar="LIST",
+    help="What to write: html, svg, or both.",
+)  # fmt: skip
+@click.option("--strict", is_flag=True, help="Exit with 1 where there are warnings; write nothing.")
+@_QUIET
+def build(scenes: tuple[Path, ...], out: str, formats: str, strict: bool, quiet: bool) -> None:
+    r"""Build scenes into standalone pages and SVGs, with an index of them all.
+
+    \b
+    Examples:
+      geotween build fire.yaml -o public
+      geotween build scenes/*.yaml -o public --format svg
+      geotween build fire.yaml -o public --strict -q     in CI
+    """
+    from geotween.export import build as export
+
+    wanted = [name.strip() for name in formats.split(",") if name.strip()]
+    unknown = sorted(set(wanted) - set(export.FORMATS))
+    if unknown or not wanted:
+        expected = ", ".join(export.FORMATS)
+        raise click.BadParameter(f"expected some of {expected}", param_hint="--format")
+    try:
+        folder = export.writable(out)
+    except OSError as error:
+        _fail(f"cannot write to {out}: {error.filename}: {error.strerror}")
+    loaded = _load(scenes)
+    names = [scene.name for scene in loaded]
+    for name in names:
+        if names.count(name) > 1 or name == Path(export.INDEX).stem:
+            _fail(f"two files would be called {name}.html; rename the scene {name}.yaml")
+    rendered: list[Rendered] = []
+    hidden = quiet or not sys.stderr.isatty()
+    with click.progressbar(loaded, label="building", file=sys.stderr, hidden=hidden) as bar:
+        rendered += (export.render_scene(s, wanted, index_href=export.INDEX) for s in bar)
+    worst = _report_problems((p for r in rendered for p in r.problems), quiet=quiet)
+    if strict and worst:
+        click.echo("nothing written: --strict, and there are warnings", err=True)
+        raise SystemExit(PROBLEMS)
+    title = loaded[0].model.title if len(loaded) == 1 else "Maps"
+    lang = loaded[0].model.lang
+    index = export.gallery([r.card for r in rendered], title, lang)
+    files = {name: text for r in rendered for name, text in r.files.items()}
+    try:
+        export.write(folder, {**files, export.INDEX: index})
+    except OSError as error:
+        _fail(f"cannot write to {out}: {error.strerror}")
+    if not quiet:
+        for result in rendered:
+            _print_built(result, folder)
+        click.echo(f"open {folder / export.INDEX}")
+
+
+@main.command()
+@_SCENES
+@_QUIET
+def check(scenes: tuple[Path, ...], quiet: bool) -> None:
+    r"""Validate scenes and plan their motion; print problems and measures.
+
+    \b
+    Example:
+      geotween check scenes/*.yaml
+    """
+    from geotween.export.build import plan_scene, transition_reports
+
+    worst = False
+    for scene in _load(scenes):
+        morphs, problems = plan_scene(scene)
+        if not quiet:
+            click.echo(f"{scene.path}: {len(scene.steps)} steps, {len(morphs)} transitions")
+            for transition in transition_reports(scene, morphs):
+                measures = ", ".join(f"{k} {v:.3g}" for k, v in transition.measures.items())
+                click.echo(f"  {' → '.join(transition.steps)}: {measures}")
+        worst |= _report_problems(problems, quiet=quiet, notes=True)
+    raise SystemExit(PROBLEMS if worst else DONE)
+
+
+@main.command()
+def schema() -> None:
+    r"""Print the JSON Schema of scene files, for editors.
+
+    \b
+    Example:
+      geotween schema > scene.schema.json
+      and as first line of a scene:
+      # yaml-language-server: $schema=scene.schema.json
+    """
+    from geotween.scene.read import scene_schema
+
+    click.echo(json.dumps(scene_schema(), indent=2, ensure_ascii=False))
+
+
+def _load(paths: Sequence[Path]) -> list[Scene]:
+    """All scenes, or every fault of all of them on stderr and the end."""
+    from geotween.data.load import load
+    from geotween.scene.errors import SceneError
+
+    loaded: list[Scene] = []
+    faults: list[Fault] = []
+    for path in paths:
+        try:
+            loaded.append(load(path))
+        except SceneError as error:
+            faults += error.faults
+    if faults:
+        _fail(str(SceneError(faults)))
+    return loaded
+
+
+def _report_problems(problems: Iterable[Problem], *, quiet: bool, notes: bool = False) -> bool:
+    """Print problems, notes one by one or counted; True where one is more than a note."""
+    listed = list(problems)
+    serious = [problem for problem in listed if problem.severity != "note"]
+    if not quiet:
+        for problem in listed if notes else serious:
+            click.echo(f"  {problem}" if notes else str(problem), err=not notes)
+        count = len(listed) - len(serious)
+        if count and not notes:
+            click.echo(f"{count} small mends: see geotween check", err=True)
+    return bool(serious)
+
+
+def _print_built(result: Rendered, folder: Path) -> None:
+    pieces = sum(t.pieces for t in result.transitions)
+    sizes = ", ".join(
+        f"{folder / name} ({len(content) / 1000:.0f} kB)" for name, content in result.files.items()
+    )
+    click.echo(f"{result.name}: {len(result.transitions)} transitions, {pieces} pieces → {sizes}")
+
+
+def _fail(message: str) -> NoReturn:
+    click.echo(message, err=True)
+    raise SystemExit(BAD_SCENE)

@@ -1,0 +1,1 @@
+"""Geometry in: what formats hold, made valid, as polygon sets."""

@@ -1,0 +1,181 @@
+"""A scene from its file: every step's polygons read, made valid and put into one frame."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+
+from geotween.data.parse import Parser, is_wkt
+from geotween.data.polygons import Feature, PolygonSet, fit_into, polygon_set
+from geotween.data.problems import Problem
+from geotween.data.repair import repair
+from geotween.scene.document import Document, Location, read_json, read_text
+from geotween.scene.errors import Fault, SceneError
+from geotween.scene.model import Layer, SceneFile
+from geotween.scene.read import read_scene
+from geotween.scene.values import Time
+
+REGIONS = "regions"  # the one layer that moves
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """The polygon set at one time, with its words."""
+
+    label: str
+    time: Time | None
+    caption: str
+    hold: float
+    regions: PolygonSet
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A scene ready to be planned: its model, its steps and what was mended in them.
+
+    ``layers`` are the static shapes underneath, each with its polygons. All coordinates are the
+    data's own; with ``fit: each`` every step is already centred in the frame of the first one
+    that has polygons.
+    """
+
+    name: str
+    path: Path
+    model: SceneFile
+    steps: tuple[Step, ...]
+    layers: tuple[tuple[Layer, PolygonSet], ...]
+    problems: tuple[Problem, ...]
+
+    def __iter__(self) -> Iterator[Step]:
+        return iter(self.steps)
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene file and all that it names.
+
+    Raises
+    ------
+    SceneError
+        With every fault of the scene and of the files it names.
+    """
+    name = str(path)
+    file = Path(path)
+    document = Document(name, file, read_text(file, name))
+    model, values, faults = read_scene(document)
+    reader = _SourceReader(document)
+    steps = reader.all_sources(values, "steps")
+    layers = reader.all_sources(values.get("map"), "layers", prefix=("map",))
+    faults += reader.faults
+    if model is None or faults:
+        raise SceneError(sorted(set(faults)))
+    if not any(steps.values()):
+        raise SceneError([document.fault(("steps",), "no step has a polygon", at_key=True)])
+
+    labels = [_label(step.label, step.time, i) for i, step in enumerate(model.steps)]
+    problems: list[Problem] = []
+    sets = []
+    for index, label in enumerate(labels):
+        kept, found = repair(steps[index], step=label, winding=index in reader.geojson_steps)
+        problems += _skipped(reader.skipped.get(index, 0), label) + found
+        sets.append(polygon_set(kept))
+    if model.map.fit == "each":
+        frame = next(s.bounds for s in sets if len(s))
+        sets = [fit_into(s, frame) for s in sets]
+    static = []
+    for index, layer in enumerate(model.map.layers):
+        kept, found = repair(layers[index], step=f"layer {layer.name or index + 1}")
+        problems += found
+        static.append((layer, polygon_set(kept)))
+    _check_size(document, sets)
+    return Scene(
+        file.stem,
+        file,
+        model,
+        tuple(
+            Step(label, s.time, s.caption, model.timing.hold if s.hold is None else s.hold, regions)
+            for label, s, regions in zip(labels, model.steps, sets, strict=True)
+        ),
+        tuple(static),
+        tuple(problems),
+    )
+
+
+class _SourceReader:
+    """Reads the ``polygons`` of steps and layers, inline or from the files they name."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.faults: list[Fault] = []
+        self.skipped: dict[int, int] = {}
+        self.geojson_steps: set[int] = set()
+
+    def all_sources(
+        self, holder: Any, name: str, prefix: Location = ()
+    ) -> dict[int, list[Feature]]:
+        """The features of each member of a list (steps, layers) that has polygons."""
+        members = holder.get(name) if isinstance(holder, dict) else None
+        found: dict[int, list[Feature]] = {}
+        for index, member in enumerate(members if isinstance(members, list) else []):
+            if isinstance(member, dict) and "polygons" in member:
+                place = (*prefix, name, index, "polygons")
+                found[index] = self._source(member["polygons"], place, index)
+        return found
+
+    def _source(self, value: Any, at: Location, index: int) -> list[Feature]:
+        if isinstance(value, str) and not is_wkt(value):
+            return self._file(value, at, index)
+        if isinstance(value, dict):
+            self.geojson_steps.add(index)
+        parser = Parser(lambda where, *words: self._report(self.document, (*at, *where), *words))
+        features = parser.features(value)
+        self.skipped[index] = parser.skipped
+        return features
+
+    def _file(self, name: str, at: Location, index: int) -> list[Feature]:
+        named_by = self.document.fault(at, "")
+        path = self.document.path.parent / name
+        try:
+            source = Document(str(path), path, read_text(path, name, named_by=named_by))
+            value = read_json(source)
+        except SceneError as error:
+            self.faults += error.faults
+            return []
+        parser = Parser(lambda where, *words: self._report(source, where, *words))
+        features = parser.geojson(value)
+        self.skipped[index] = parser.skipped
+        self.geojson_steps.add(index)
+        return features
+
+    def _report(self, document: Document, at: Location, message: str, hint: str) -> None:
+        self.faults.append(document.fault(at, message, hint))
+
+
+def _label(label: str | None, time: Time | None, index: int) -> str:
+    if label is not None:
+        return label
+    if time is None:
+        return str(index + 1)
+    return f"{time:g}" if isinstance(time, float) else time.isoformat()
+
+
+def _skipped(count: int, label: str) -> list[Problem]:
+    if not count:
+        return []
+    message = "features without area (points, lines, null geometries) were left out"
+    return [Problem("no area", "warning", message, (label,), "", float(count), "features")]
+
+
+def _check_size(document: Document, sets: list[PolygonSet]) -> None:
+    """Raise where double precision cannot tell the data's places apart."""
+    everything = np.concatenate([s.polygons for s in sets])
+    box = shapely.total_bounds(everything)
+    size, reach = (box[2:] - box[:2]).max(), np.abs(box).max()
+    if size * 1e12 < reach:
+        message = f"the data span {size:.3g} units at {reach:.3g} from the origin: too fine to draw"
+        hint = "shift the coordinates nearer to 0"
+        raise SceneError([document.fault(("steps",), message, hint, at_key=True)])

@@ -1,0 +1,97 @@
+"""Polygon sets: the polygons of one step, with the identity of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import MultiPolygon, Polygon
+
+Key = str | int
+
+# Two places nearer than this share of the data's extent are the same place. Double precision
+# leaves some 1e-16 of the coordinates; a map shows 1e-4 of its width.
+RELATIVE_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Who a polygon is: its feature's key and class.
+
+    A feature without a key of its own has its position in the set as key, and is not ``keyed``:
+    that position says nothing about other steps.
+    """
+
+    key: Key
+    class_: str | None = None
+    keyed: bool = False
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Feature:
+    """A (Multi)Polygon of a step as its source gives it, and its position there."""
+
+    geometry: Polygon | MultiPolygon
+    key: Key | None = None
+    class_: str | None = None
+    name: str = ""
+    position: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PolygonSet:
+    """The polygons at one time: valid, outer rings counter-clockwise, holes clockwise.
+
+    ``polygons`` is an object array of shape (n,); ``identities`` is parallel to it. The parts of
+    a MultiPolygon are polygons of their own that share an identity.
+    """
+
+    polygons: NDArray[np.object_]
+    identities: tuple[Identity, ...]
+
+    def __len__(self) -> int:
+        return len(self.identities)
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Smallest x, smallest y, largest x, largest y; NaN for an empty set."""
+        return shapely.total_bounds(self.polygons)
+
+
+def polygon_set(features: Iterable[Feature]) -> PolygonSet:
+    """Features as a polygon set, MultiPolygons taken apart; geometries must be valid."""
+    listed = list(features)
+    identities = []
+    for index, feature in enumerate(listed):
+        position = index if feature.position is None else feature.position
+        keyed = feature.key is not None
+        key = position if feature.key is None else feature.key
+        identities.append(Identity(key, feature.class_, keyed, feature.name))
+    geometries = np.array([f.geometry for f in listed], dtype=object)
+    parts, owners = shapely.get_parts(geometries, return_index=True)
+    oriented = shapely.orient_polygons(parts, exterior_cw=False)
+    return PolygonSet(oriented, tuple(identities[owner] for owner in owners))
+
+
+def extent(sets: Sequence[PolygonSet]) -> float:
+    """The larger side of the box around some sets, in the data's units; 0 where all are empty."""
+    boxes = np.array([s.bounds for s in sets if len(s)])
+    if not len(boxes):
+        return 0.0
+    return float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max())
+
+
+def fit_into(polygons: PolygonSet, frame: NDArray[np.float64]) -> PolygonSet:
+    """A set scaled uniformly and centred into a frame (bounds), as in the paper's Figure 9."""
+    if not len(polygons):
+        return polygons
+    box = polygons.bounds
+    size, room = box[2:] - box[:2], frame[2:] - frame[:2]
+    scale = (room / size).min()
+    shift = (frame[:2] + frame[2:]) / 2 - scale * (box[:2] + box[2:]) / 2
+    fitted = shapely.transform(polygons.polygons, lambda points: points * scale + shift)
+    return PolygonSet(fitted, polygons.identities)

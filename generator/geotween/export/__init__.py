@@ -1,0 +1,1 @@
+"""Keyframes out: SVG, page and gallery."""

@@ -1,0 +1,189 @@
+"""Build scenes: plan, render, and write the files whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from markupsafe import Markup
+
+from geotween.data.load import Scene
+from geotween.data.problems import Problem
+from geotween.export.keyframes import keyframes
+from geotween.export.page import page, render
+from geotween.export.svg import animated_svg, still_svg
+from geotween.motion.morph import Morph, plan, resolve
+
+FORMATS = ("html", "svg")
+INDEX = "index.html"
+
+
+@dataclass(frozen=True)
+class TransitionReport:
+    """What happened between two steps: their labels, the pieces that moved, and measures."""
+
+    steps: tuple[str, str]
+    pieces: int
+    measures: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class BuildReport:
+    """What a build wrote and met. ``bytes`` are the sizes of ``files``, in their order."""
+
+    name: str
+    files: tuple[Path, ...]
+    bytes: tuple[int, ...]
+    transitions: tuple[TransitionReport, ...]
+    problems: tuple[Problem, ...]
+
+
+@dataclass(frozen=True)
+class Card:
+    """A scene's entry in the gallery."""
+
+    title: str
+    description: str
+    href: str
+    svg_href: str
+    still: Markup
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """A scene's files before they are written, by name."""
+
+    name: str
+    files: Mapping[str, bytes]
+    card: Card
+    transitions: tuple[TransitionReport, ...]
+    problems: tuple[Problem, ...]
+
+
+def build(
+    scene: Scene, out_dir: str | os.PathLike[str], formats: Iterable[str] = FORMATS
+) -> BuildReport:
+    """Write a scene as ``<name>.html`` and ``<name>.svg`` into a folder.
+
+    Raises
+    ------
+    ValueError
+        For an unknown format.
+    OSError
+        Where the folder cannot be written to; nothing is written then.
+    """
+    folder = writable(out_dir)
+    rendered = render_scene(scene, formats)
+    return report(rendered, write(folder, rendered.files))
+
+
+def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
+    """The motion of each transition, and all problems with their steps named."""
+    motion = scene.model.motion
+    techniques = resolve(motion.method, motion.correspondence, motion.division, motion.matching)
+    morphs, problems = [], list(scene.problems)
+    for before, after in zip(scene.steps[:-1], scene.steps[1:], strict=True):
+        planned = plan(before.regions, after.regions, techniques)
+        morphs.append(planned)
+        problems += [replace(p, steps=(before.label, after.label)) for p in planned.problems]
+    return morphs, problems
+
+
+def transition_reports(scene: Scene, morphs: Sequence[Morph]) -> tuple[TransitionReport, ...]:
+    """The measures of each transition."""
+    return tuple(
+        TransitionReport((before.label, after.label), len(m.tracks), m.certificate.measures)
+        for before, after, m in zip(scene.steps[:-1], scene.steps[1:], morphs, strict=True)
+    )
+
+
+def render_scene(
+    scene: Scene, formats: Iterable[str] = FORMATS, *, index_href: str = ""
+) -> Rendered:
+    """Plan a scene and render it; nothing is written."""
+    wanted = list(formats)
+    unknown = sorted(set(wanted) - set(FORMATS))
+    if unknown:
+        raise ValueError(f"unknown format {unknown[0]!r}; expected {' or '.join(FORMATS)}")
+    morphs, problems = plan_scene(scene)
+    frames = keyframes(scene, morphs)
+    model = scene.model
+    svg_name, page_name = f"{scene.name}.svg", f"{scene.name}.html"
+    files: dict[str, bytes] = {}
+    if "html" in wanted:
+        svg_href = svg_name if "svg" in wanted else ""
+        text = page(frames, model, svg_href=svg_href, index_href=index_href)
+        files[page_name] = text.encode()
+    if "svg" in wanted:
+        origins = [f"Source: {model.source}" if model.source else "", model.credit]
+        text = animated_svg(
+            frames,
+            model.title,
+            model.description,
+            model.subtitle,
+            " · ".join(filter(None, origins)),
+        )
+        files[svg_name] = text.encode()
+    card = Card(
+        model.title,
+        model.description or model.subtitle,
+        page_name if "html" in wanted else svg_name,
+        svg_name if "svg" in wanted else "",
+        Markup(still_svg(frames, model.title, len(scene.steps) // 2, margins=True)),
+    )
+    return Rendered(scene.name, files, card, transition_reports(scene, morphs), tuple(problems))
+
+
+def gallery(cards: Sequence[Card], title: str, lang: str = "en") -> bytes:
+    """A page that shows several maps."""
+    return render("index.html.j2", lang=lang, title=title, cards=cards).encode()
+
+
+def report(rendered: Rendered, files: Sequence[Path]) -> BuildReport:
+    sizes = tuple(len(content) for content in rendered.files.values())
+    return BuildReport(rendered.name, tuple(files), sizes, rendered.transitions, rendered.problems)
+
+
+def writable(out_dir: str | os.PathLike[str]) -> Path:
+    """The folder, if files can be written to it; it is not made yet.
+
+    Raises
+    ------
+    OSError
+        Where they cannot.
+    """
+    folder = Path(out_dir)
+    nearest = next(p for p in (folder, *folder.absolute().parents) if p.exists())
+    if not nearest.is_dir():
+        raise NotADirectoryError(20, "not a folder", str(nearest))
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise PermissionError(13, "permission denied", str(nearest))
+    return folder
+
+
+def write(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
+    """Write files under temporary names first, then put all of them in place."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as clean_up:
+        ready: list[tuple[Path, Path]] = []
+        for name, content in files.items():
+            handle, temporary = tempfile.mkstemp(prefix=f".{name}.", dir=folder)
+            clean_up.callback(Path(temporary).unlink, missing_ok=True)
+            with os.fdopen(handle, "wb") as file:
+                file.write(content)
+            _as_new_file(Path(temporary))
+            ready.append((Path(temporary), folder / name))
+        for made, place in ready:
+            made.replace(place)
+    return [folder / name for name in files]
+
+
+def _as_new_file(path: Path) -> None:
+    """Give a temporary file the permissions that a new file gets."""
+    mask = os.umask(0)
+    os.umask(mask)
+    path.chmod(0o666 & ~mask)

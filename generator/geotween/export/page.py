@@ -1,0 +1,149 @@
+"""A map as one HTML page: the first step as SVG, keyframes as JSON, and the player."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from functools import cache
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from geotween.export.keyframes import Keyframes, Shape
+from geotween.export.page_grid import GRID, GridTrack
+from geotween.export.paint import Paint
+from geotween.export.resources import resource
+from geotween.export.svg import still_svg
+from geotween.scene.model import SceneFile
+
+FORMAT_VERSION = 1
+
+
+def page(frames: Keyframes, model: SceneFile, *, svg_href: str, index_href: str) -> str:
+    """The page of a scene; it asks the network for nothing."""
+    return render(
+        "page.html.j2",
+        lang=model.lang,
+        title=model.title,
+        subtitle=model.subtitle,
+        description=model.description,
+        source=model.source,
+        credit=model.credit,
+        figure=Markup(still_svg(frames, model.title)),
+        keyframes=Markup(_island(keyframes_json(frames))),
+        svg_href=svg_href,
+        index_href=index_href,
+    )
+
+
+def render(template: str, **context: Any) -> str:
+    """A template with the player's style and script, and the hashes a policy admits them by."""
+    style, script = _text("player.css"), _text("player.js")
+    return (
+        _environment()
+        .get_template(template)
+        .render(
+            **context,
+            style=Markup(style),
+            script=Markup(script),
+            style_hash=_hash(style),
+            script_hash=_hash(script),
+        )
+    )
+
+
+def keyframes_json(frames: Keyframes) -> dict[str, Any]:
+    """Keyframes as plain values; each track and paint once, vertices as differences."""
+    slots = frames.slots()
+    groups = list(dict.fromkeys(slot.group for slot in slots))
+    paints: dict[Paint, int] = {}
+    tracks: dict[str, int] = {}
+
+    def shape(value: Shape) -> dict[str, Any]:
+        found: dict[str, Any] = {
+            "slot": slots.index(value.slot),
+            "tracks": [tracks.setdefault(_track(t), len(tracks)) for t in value.tracks],
+            "paint": [paints.setdefault(p, len(paints)) for p in value.paints],
+        }
+        if value.slot.code:
+            found["code"] = value.slot.code
+        if value.show:
+            found["show"] = [round(v, 6) for v in value.show]
+        return found
+
+    spans = [
+        {
+            "start": span.start / 1000,
+            "end": span.end / 1000,
+            "step": span.step if span.rest else None,
+            "shapes": [shape(s) for s in shapes],
+        }
+        for span, shapes in frames.spans
+    ]
+    return {
+        "version": FORMAT_VERSION,
+        "grid": GRID,
+        "duration": frames.duration / 1000,
+        "loop": frames.loop,
+        "easing": frames.easing,
+        "steps": [
+            {"label": label, "caption": caption, "start": r.start / 1000, "end": r.end / 1000}
+            for label, caption, r in zip(frames.labels, frames.captions, frames.rests, strict=True)
+        ],
+        "paints": [
+            {"fill": p.fill, "stroke": p.stroke, "width": p.width, "dash": p.dash} for p in paints
+        ],
+        "groups": [{"layer": g.layer, "opacity": g.opacity} for g in groups],
+        "slots": [{"group": groups.index(s.group), "kind": s.kind, "key": s.key} for s in slots],
+        "tracks": [json.loads(text) for text in tracks],
+        "spans": spans,
+    }
+
+
+def _track(track: GridTrack) -> str:
+    """A track as JSON.
+
+    Positions at the first key time, then displacements; both as differences along the vertices.
+    """
+    moves = np.diff(track.vertices, axis=0, prepend=0)
+    steps = np.diff(moves, axis=1, prepend=0)
+    found: dict[str, Any] = {
+        "times": track.times,
+        "rings": np.diff(track.offsets).tolist(),
+        "vertices": [values.ravel().tolist() for values in steps],
+    }
+    if track.seams.any():
+        starts = np.flatnonzero(np.append(True, track.seams[1:] != track.seams[:-1]))
+        counts = np.diff(np.append(starts, len(track.seams)))
+        found["seams"] = np.column_stack([track.seams[starts], counts]).ravel().tolist()
+    return json.dumps(found, separators=(",", ":"))
+
+
+def _island(value: object) -> str:
+    """JSON that no text in it can end: inside a script element ``<`` is written as an escape."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False)
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        loader=FileSystemLoader(resource("templates")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+
+
+@cache
+def _text(name: str) -> str:
+    return (resource("templates") / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

@@ -1,0 +1,115 @@
+"""Division: cut polygons until each piece has exactly one partner (Algorithm 1 of the paper).
+
+A meets C and D, B meets D      A becomes Ac | Ad, D becomes Da | Db, so that the
+pairs are  Ac-C  Ad-Da  B-Db: the paper's SPL
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from geotween.data.polygons import Identity, PolygonSet
+from geotween.data.problems import Problem
+from geotween.motion.correspond import Correspondence
+from geotween.motion.divide.voronoi import Mend, voronoi
+
+NOBODY = -1  # the index of a partner that does not exist: a birth's origin, a death's target
+
+# A polygon and its correspondents in; one piece for each of them, in their order, out.
+Technique = Callable[[Polygon, Sequence[Polygon]], tuple[list[Polygon], list[Mend]]]
+
+TECHNIQUES: Mapping[str, Technique] = {"voronoi": voronoi}
+
+_MENDS = {
+    "coincident seeds": "two Voronoi seeds coincided; the later took its next-nearest vertex",
+    "cell in parts": "parts of a Voronoi cell went to the neighbour with the longest common seam",
+    "empty cell": "a Voronoi cell was empty and was cut from a neighbour",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Division:
+    """The SPL: pairs of pieces, one to one.
+
+    ``origin_pieces`` and ``target_pieces`` are object arrays of shape (m,) that hold a Polygon,
+    or the Point that a polygon without a partner grows from or shrinks to. ``indices``, (m, 2),
+    says of which polygons they are pieces; NOBODY stands for none.
+    """
+
+    origin: PolygonSet
+    target: PolygonSet
+    origin_pieces: NDArray[np.object_]
+    target_pieces: NDArray[np.object_]
+    indices: NDArray[np.intp]
+    problems: tuple[Problem, ...]
+
+
+def divide(correspondence: Correspondence, technique: str = "voronoi") -> Division:
+    """Cut every polygon that has several correspondents; pair the pieces.
+
+    Births come after the pairs, deaths after the births.
+    """
+    origin, target = correspondence.origin, correspondence.target
+    of_origin, of_target = correspondence.of_origin(), correspondence.of_target()
+    cut = TECHNIQUES[technique]
+    origin_pieces, problems = _cut_all(origin, target, of_origin, cut)
+    target_pieces, more = _cut_all(target, origin, of_target, cut)
+
+    # Pieces come sorted by (own index, partner's index); the pairs are sorted by origin, target.
+    pairs = correspondence.pairs
+    by_target = np.lexsort((pairs[:, 0], pairs[:, 1]))
+    paired = np.empty(len(pairs), dtype=object)
+    paired[by_target] = target_pieces
+
+    born = np.flatnonzero([not len(partners) for partners in of_target])
+    dead = np.flatnonzero([not len(partners) for partners in of_origin])
+    return Division(
+        origin,
+        target,
+        np.concatenate(
+            [origin_pieces, shapely.centroid(target.polygons[born]), origin.polygons[dead]]
+        ),
+        np.concatenate([paired, target.polygons[born], shapely.centroid(origin.polygons[dead])]),
+        np.concatenate(
+            [
+                pairs,
+                np.column_stack([np.full(len(born), NOBODY), born]),
+                np.column_stack([dead, np.full(len(dead), NOBODY)]),
+            ]
+        ),
+        tuple(problems + more),
+    )
+
+
+def _cut_all(
+    own: PolygonSet, others: PolygonSet, partners: list[NDArray[np.intp]], cut: Technique
+) -> tuple[NDArray[np.object_], list[Problem]]:
+    """The pieces of all polygons that have partners, in order, and the mends as problems."""
+    pieces: list[Polygon] = []
+    problems: list[Problem] = []
+    for polygon, identity, mates in zip(own.polygons, own.identities, partners, strict=True):
+        if len(mates) < 2:
+            pieces += [polygon] * len(mates)
+            continue
+        cells, mends = cut(polygon, list(others.polygons[mates]))
+        pieces += cells
+        for mend in mends:
+            piece = f"{_called(identity)} for {_called(others.identities[mates[mend.cell]])}"
+            problems.append(
+                Problem(mend.kind, "note", _MENDS[mend.kind], (), piece, mend.share, "of the area")
+            )
+    found = np.empty(len(pieces), dtype=object)
+    found[:] = pieces
+    return found, problems
+
+
+def _called(identity: Identity) -> str:
+    if identity.name or identity.keyed:
+        return identity.name or str(identity.key)
+    return f"polygon {int(identity.key) + 1}"

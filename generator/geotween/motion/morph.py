@@ -1,0 +1,256 @@
+"""Interpolate matched pieces, and the whole way from two sets of polygons to their motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+from shapely.geometry import MultiPolygon, Point, Polygon
+
+from geotween.data.polygons import (
+    RELATIVE_TOLERANCE,
+    Feature,
+    Identity,
+    Key,
+    PolygonSet,
+    extent,
+    fit_into,
+    polygon_set,
+)
+from geotween.data.problems import Problem
+from geotween.data.repair import repair
+from geotween.motion import correspond as correspondences
+from geotween.motion import divide as divisions
+from geotween.motion import match as matchings
+from geotween.motion.certify import Certificate, certify
+from geotween.motion.correspond import correspond
+from geotween.motion.divide import NOBODY, Division, divide
+from geotween.motion.match import Matching, match
+from geotween.motion.seams import share_vertices
+from geotween.motion.tracks import Frame, Track, frame
+
+Shape = Polygon | MultiPolygon
+Shapes = Sequence[Shape] | Mapping[str, Shape]
+
+
+@dataclass(frozen=True)
+class Techniques:
+    """The name of each stage's technique."""
+
+    correspondence: str
+    division: str
+    matching: str
+
+
+METHODS: Mapping[str, Techniques] = {
+    "paper": Techniques("intersects", "voronoi", "rotation"),
+    "auto": Techniques("intersects", "voronoi", "rotation"),
+}
+
+
+@dataclass(frozen=True)
+class PiecePair:
+    """An origin piece and the target piece it becomes; a Point where one of them is nothing.
+
+    The keys are those of the polygons that the pieces are cut from, or their positions where
+    they have no key; None where there is no polygon.
+    """
+
+    origin: Polygon | Point
+    target: Polygon | Point
+    origin_key: Key | None
+    target_key: Key | None
+
+
+@dataclass(frozen=True, eq=False)
+class Morph:
+    """The motion from one set of polygons to another."""
+
+    tracks: tuple[Track, ...]
+    division: Division
+    problems: tuple[Problem, ...]
+
+    def frame(self, t: float) -> Frame:
+        """The regions drawn at t in [0, 1], after easing.
+
+        Raises
+        ------
+        ValueError
+            Where t is outside [0, 1].
+        """
+        return frame(self.tracks, t)
+
+    @cached_property
+    def pairs(self) -> tuple[PiecePair, ...]:
+        """The paper's SPL: the list of one-to-one pairs of pieces."""
+        division = self.division
+        return tuple(
+            PiecePair(one, other, _key(division.origin, i), _key(division.target, j))
+            for one, other, (i, j) in zip(
+                division.origin_pieces, division.target_pieces, division.indices, strict=True
+            )
+        )
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """What is known about this motion."""
+        return certify(self.division, self.problems)
+
+
+def morph(
+    origin: Shapes,
+    target: Shapes,
+    method: str = "auto",
+    *,
+    correspondence: str | None = None,
+    division: str | None = None,
+    matching: str | None = None,
+    fit: str = "shared",
+) -> Morph:
+    """The motion that turns one set of polygons into another.
+
+    Parameters
+    ----------
+    origin, target
+        Polygons or MultiPolygons in planar coordinates, in a sequence, or by key. Equal keys are
+        the same thing over time; the parts of a MultiPolygon move on their own.
+    method
+        ``paper``: correspondence by intersection, Voronoi division, rotation, straight lines.
+        ``auto`` is ``paper`` in this version.
+    correspondence, division, matching
+        Another technique for one stage.
+    fit
+        ``each`` scales the target uniformly and centres it in the origin's box first.
+
+    Raises
+    ------
+    ValueError
+        For an unknown name, or coordinates that are not finite.
+    TypeError
+        For anything but polygons.
+    """
+    techniques = resolve(method, correspondence, division, matching)
+    if fit not in ("shared", "each"):
+        raise ValueError(f"fit is shared or each, not {fit!r}")
+    origin_set, origin_problems = _read(origin, "origin")
+    target_set, target_problems = _read(target, "target")
+    if fit == "each" and len(origin_set):
+        target_set = fit_into(target_set, origin_set.bounds)
+    planned = plan(origin_set, target_set, techniques)
+    problems = (*origin_problems, *target_problems, *planned.problems)
+    return Morph(planned.tracks, planned.division, problems)
+
+
+def resolve(
+    method: str,
+    correspondence: str | None = None,
+    division: str | None = None,
+    matching: str | None = None,
+) -> Techniques:
+    """The technique of each stage: the one named, else the method's.
+
+    Raises
+    ------
+    ValueError
+        For an unknown name.
+    """
+    default = METHODS[_known(method, METHODS, "method")]
+    return Techniques(
+        _known(
+            correspondence or default.correspondence, correspondences.TECHNIQUES, "correspondence"
+        ),
+        _known(division or default.division, divisions.TECHNIQUES, "division"),
+        _known(matching or default.matching, matchings.TECHNIQUES, "matching"),
+    )
+
+
+def plan(
+    origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str = "regions"
+) -> Morph:
+    """Correspond, divide, match and interpolate two sets."""
+    related = correspond(origin, target, techniques.correspondence)
+    divided = divide(related, techniques.division)
+    tolerance = RELATIVE_TOLERANCE * extent([origin, target])
+    tracks, problems = interpolate(match(divided, techniques.matching), layer, tolerance)
+    return Morph(tracks, divided, (*divided.problems, *problems))
+
+
+def interpolate(
+    matching: Matching, layer: str, tolerance: float
+) -> tuple[tuple[Track, ...], list[Problem]]:
+    """Tracks on which matched vertices travel on straight lines.
+
+    Both sides of a seam get the same vertices first; ``tolerance`` is in the data's units.
+    """
+    division = matching.division
+    shared = share_vertices(matching.pieces, division.indices, tolerance)
+    problems = []
+    if shared.missing:
+        message = "seams have vertices on one side only and may show as hairlines"
+        problems.append(
+            Problem("open seam", "warning", message, measure=shared.missing, unit="vertices")
+        )
+    origin_keys = {i.key for i in division.origin.identities if i.keyed}
+    target_keys = {i.key for i in division.target.identities if i.keyed}
+    times = np.array([0.0, 1.0])
+    tracks = []
+    for (i, j), piece in zip(division.indices, shared.pieces, strict=True):
+        here = division.origin.identities[i] if i != NOBODY else None
+        there = division.target.identities[j] if j != NOBODY else None
+        ends = (here or there, there or here)
+        assert ends[0] is not None
+        assert ends[1] is not None
+        bearer = _bearer(ends[0], ends[1], origin_keys, target_keys)
+        tracks.append(
+            Track(
+                bearer, (ends[0], ends[1]), layer, times, piece.vertices, piece.offsets, piece.seams
+            )
+        )
+    return tuple(tracks), problems
+
+
+def _bearer(
+    origin: Identity, target: Identity, origin_keys: set[Key], target_keys: set[Key]
+) -> Identity:
+    """Whose key a piece bears: the target's where only the target's lives on, else the origin's.
+
+    A key lives on where both sets have it.
+    """
+    origin_lives = origin.keyed and origin.key in target_keys
+    target_lives = target.keyed and target.key in origin_keys
+    return target if target_lives and not origin_lives else origin
+
+
+def _read(shapes: Shapes, name: str) -> tuple[PolygonSet, list[Problem]]:
+    """A polygon set from what ``morph`` was given; positions count in the sequence as given."""
+    keyed = isinstance(shapes, Mapping)
+    features = []
+    items: Iterable[tuple[Key, Shape]] = (
+        shapes.items() if isinstance(shapes, Mapping) else enumerate(shapes)
+    )
+    for position, (key, shape) in enumerate(items):
+        what = f"{name}[{key!r}]"
+        if not isinstance(shape, Polygon | MultiPolygon):
+            raise TypeError(
+                f"{what} is a {type(shape).__name__}; expected a Polygon or MultiPolygon"
+            )
+        if not np.isfinite(shapely.get_coordinates(shape)).all():
+            raise ValueError(f"{what} has coordinates that are not finite")
+        if not shape.is_empty:
+            flat = shapely.force_2d(shape)
+            features.append(Feature(flat, key if keyed else None, position=position))
+    kept, problems = repair(features, step=name)
+    return polygon_set(kept), problems
+
+
+def _key(polygons: PolygonSet, index: int) -> Key | None:
+    return None if index == NOBODY else polygons.identities[index].key
+
+
+def _known(name: str, table: Mapping[str, object], what: str) -> str:
+    if name not in table:
+        raise ValueError(f"unknown {what} {name!r}; expected one of {', '.join(sorted(table))}")
+    return name

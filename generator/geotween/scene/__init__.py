@@ -1,0 +1,1 @@
+"""What a scene file may say, and where in the file it said it."""

@@ -1,0 +1,175 @@
+"""From a scene file's text to the scene model, with every fault at its line and column."""
+
+from __future__ import annotations
+
+import datetime
+from itertools import pairwise
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from geotween.scene.document import Document, Location, read_yaml
+from geotween.scene.errors import Fault, SceneError, did_you_mean
+from geotween.scene.model import SceneFile
+
+_EXPECTED = {
+    "string_type": "expected a text",
+    "float_type": "expected a number",
+    "float_parsing": "expected a number",
+    "bool_type": "expected true or false",
+    "bool_parsing": "expected true or false",
+    "tuple_type": "expected a list",
+    "list_type": "expected a list",
+    "dict_type": "expected a mapping (key: value)",
+    "model_type": "expected a mapping (key: value)",
+    "model_attributes_type": "expected a mapping (key: value)",
+    "finite_number": "expected a finite number",
+}
+
+
+def read_scene(document: Document) -> tuple[SceneFile | None, Any, list[Fault]]:
+    """The model of a scene, the plain values behind it, and what is wrong with it.
+
+    The values come back even where the model does not, so that the geometry in them can be
+    checked in the same pass and all faults shown at once.
+
+    Raises
+    ------
+    SceneError
+        Where the text is not YAML at all.
+    """
+    values = read_yaml(document)
+    if not isinstance(values, dict):
+        hint = "a scene begins with a title and two steps"
+        message = "the scene is empty" if values is None else "expected a mapping (key: value)"
+        raise SceneError([document.fault_at(1, 1, message, hint)])
+    try:
+        scene = SceneFile.model_validate(values)
+    except ValidationError as error:
+        faults = (_fault(document, dict(item)) for item in error.errors())
+        return None, values, [fault for fault in faults if fault is not None]
+    return scene, values, _check_times(document, scene)
+
+
+def scene_schema() -> dict[str, Any]:
+    """The JSON Schema of a scene file, for editors."""
+    schema = SceneFile.model_json_schema(by_alias=True)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "geotween scene",
+        **{key: value for key, value in schema.items() if key != "title"},
+    }
+
+
+def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
+    location: Location = tuple(step for step in error["loc"] if step != "[key]")
+    name = location[-1] if location else "scene"
+    kind, context = error["type"], error.get("ctx", {})
+    if kind == "extra_forbidden":
+        hint = did_you_mean(str(name), _known_keys(location[:-1]))
+        return document.fault(location, f'unknown key "{name}"', hint, at_key=True)
+    if kind == "missing":
+        return document.fault(location[:-1], f"{_holder(location)} needs {_a(str(name))}")
+    if kind == "too_short" and location == ("steps",):
+        count = len(error["input"])  # the model counts only those without a fault of their own
+        message = f"a scene needs at least two steps, not {count}"
+        return document.fault(location, message, at_key=True) if count < 2 else None
+    if kind == "literal_error":
+        known = [word.strip(" '") for word in context["expected"].replace(" or ", ",").split(",")]
+        given = error["input"]
+        message = f'"{name}" cannot be {_shown(given)}'
+        return document.fault(location, message, did_you_mean(str(given), known))
+    if kind == "string_pattern_mismatch":
+        return document.fault(location, f'"{name}": expected a language code such as en or pt-BR')
+    if kind == "value_error":
+        return document.fault(location, f'"{name}": {context["error"]}')
+    message = _EXPECTED.get(kind) or error["msg"].replace("Input should be", "expected a number")
+    return document.fault(location, f'"{name}": {message}, not {_shown(error["input"])}')
+
+
+def _check_times(document: Document, scene: SceneFile) -> list[Fault]:
+    """What the model cannot see field by field: times that fit each other and the timing."""
+    faults = []
+    times = [step.time for step in scene.steps]
+    kinds = {_kind(time) for time in times if time is not None}
+    if len(kinds) > 1:
+        odd = next(i for i, t in enumerate(times) if t is not None and _kind(t) != _kind_of(times))
+        faults.append(
+            document.fault(
+                ("steps", odd, "time"),
+                f"\"time\": one step's time is a {_kind(times[odd])}, another's is not",
+                "write all times of a scene as dates, or as date-times, or as numbers",
+            )
+        )
+    transition, count = scene.timing.transition, len(scene.steps) - 1
+    place: Location = ("timing", "transition")
+    if isinstance(transition, tuple) and len(transition) != count:
+        message = f"{len(transition)} transition times for {count} transitions"
+        faults.append(document.fault(place, message, "list one for each pair of steps"))
+    if transition == "proportional" and len(kinds) < 2:
+        for number, (before, after) in enumerate(pairwise(times), start=1):
+            if before is None or after is None:
+                index = number - 1 if before is None else number
+                message = (
+                    f"proportional timing needs a time for each step; step {index + 1} has none"
+                )
+                faults.append(document.fault(("steps", index), message))
+            elif before == after:
+                message = f"proportional timing: steps {number} and {number + 1} have the same time"
+                faults.append(document.fault(("steps", number, "time"), message))
+    elif scene.timing.total is not None and transition != "proportional":
+        message = '"total" goes with transition: proportional'
+        faults.append(document.fault(("timing", "total"), message, at_key=True))
+    return faults
+
+
+def _kind(time: object) -> str:
+    if isinstance(time, datetime.datetime):
+        return "date-time" if time.tzinfo is None else "date-time with a zone"
+    return "date" if isinstance(time, datetime.date) else "number"
+
+
+def _kind_of(times: list[Any]) -> str:
+    return _kind(next(time for time in times if time is not None))
+
+
+def _known_keys(location: Location) -> list[str]:
+    """The keys that the model knows in the mapping at a location."""
+    model: Any = SceneFile
+    for step in location:
+        if isinstance(step, int):
+            continue
+        known = getattr(model, "model_fields", {})
+        field = next((f for n, f in known.items() if step in (n, f.alias)), None)
+        if field is not None:
+            model = _model_in(field.annotation)
+    return [field.alias or name for name, field in model.model_fields.items()]
+
+
+def _model_in(annotation: Any) -> Any:
+    """The model inside an annotation such as ``tuple[Step, ...]`` or ``dict[str, StyleRule]``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    inner = (_model_in(part) for part in getattr(annotation, "__args__", ()))
+    return next((model for model in inner if model is not None), None)
+
+
+def _holder(location: Location) -> str:
+    if len(location) == 1:
+        return "the scene"
+    if location[0] == "steps" and isinstance(location[1], int):
+        return f"step {location[1] + 1}"
+    return f'"{location[-2]}"'
+
+
+def _a(name: str) -> str:
+    return f'"{name}"'
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list):
+        return "a list"
+    text = str(value)
+    return f'"{text if len(text) <= 40 else text[:39] + "…"}"'

@@ -1,0 +1,154 @@
+"""The kinds of value a scene file holds, each with what it accepts and its JSON Schema."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, WithJsonSchema
+from pydantic_extra_types.color import Color
+
+Time = datetime.date | datetime.datetime | float
+
+_SCALAR: Any = ["string", "number", "boolean"]  # YAML editors type a bare 1984 or no
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+# What XML cannot hold, or UTF-8 cannot write.
+UNWRITABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
+
+
+def _text(value: str) -> str:
+    bad = UNWRITABLE.search(value)
+    if bad:
+        raise ValueError(f"the character U+{ord(bad[0]):04X} cannot be shown; remove it")
+    return value
+
+
+def _colour(value: str) -> str:
+    if value == "none":
+        return value
+    try:
+        colour = Color(value)
+    except ValueError:
+        raise ValueError(
+            f'expected a colour, a hex value like "#c1440e" (in quotes), a CSS name like '
+            f'steelblue, or none, not "{value}"'
+        ) from None
+    shown = str(colour.as_hex(format="long"))
+    if len(shown) != len("#rrggbb"):
+        raise ValueError("a colour here is solid; use opacity for see-through")
+    return shown
+
+
+def _time(value: Any) -> Time:
+    """A date, a date-time or a number, from the text that was written.
+
+    A bare year reads as a number; both put steps in the same order.
+    """
+    if isinstance(value, datetime.date | float):
+        return value
+    text = value.strip() if isinstance(value, str) else ""
+    if _NUMBER.fullmatch(text):
+        return float(text)
+    for read in (datetime.date.fromisoformat, datetime.datetime.fromisoformat):
+        try:
+            return read(text)
+        except ValueError:
+            continue
+    raise ValueError("expected a date (2024-01-05), a date-time (2024-01-05T12:30) or a number")
+
+
+def _transition(value: Any) -> float | tuple[float, ...] | str:
+    if value == "proportional":
+        return "proportional"
+    try:
+        if isinstance(value, list):
+            seconds = tuple(_seconds(v) for v in value)
+            if seconds:
+                return seconds
+        elif isinstance(value, str | float | int):
+            return _seconds(value)
+    except ValueError:
+        pass
+    raise ValueError(
+        "expected seconds of at least 0.05, a list of them (one for each transition), "
+        "or proportional"
+    )
+
+
+def _seconds(value: Any) -> float:
+    seconds = float(value)
+    if not 0.05 <= seconds <= 3600:
+        raise ValueError
+    return seconds
+
+
+Text = Annotated[str, AfterValidator(_text), WithJsonSchema({"type": _SCALAR})]
+Colour = Annotated[
+    str,
+    AfterValidator(_colour),
+    WithJsonSchema({"type": "string", "description": "a hex value, a CSS name, or none"}),
+]
+StepTime = Annotated[
+    Time,
+    PlainValidator(_time),
+    WithJsonSchema(
+        {"type": ["string", "number"], "description": "a date, a date-time or a number"}
+    ),
+]
+Transition = Annotated[
+    float | tuple[float, ...] | str,
+    PlainValidator(_transition),
+    WithJsonSchema(
+        {
+            "description": "seconds per transition: one number, a list, or proportional",
+            "anyOf": [
+                {"type": "number", "minimum": 0.05},
+                {"type": "array", "items": {"type": "number", "minimum": 0.05}},
+                {"const": "proportional"},
+            ],
+        }
+    ),
+]
+Seconds = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]
+Pixels = Annotated[float, Field(ge=0, le=20_000, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+
+Polygons = Annotated[
+    Any,
+    BeforeValidator(lambda value: value),
+    WithJsonSchema(
+        {
+            "description": (
+                "a path to a .geojson, a WKT text, inline GeoJSON, or a list of polygons: each a "
+                "ring [[x, y], ...], a list of rings (the first the outer one, the others holes), "
+                "a WKT text, or a feature {key, class, name, polygon}"
+            ),
+            "anyOf": [
+                {"type": "string"},
+                {"type": "object", "required": ["type"]},
+                {
+                    "type": "array",
+                    "items": {
+                        "anyOf": [
+                            {"type": "array"},
+                            {"type": "string"},
+                            {"type": "object", "required": ["type"]},
+                            {
+                                "type": "object",
+                                "required": ["polygon"],
+                                "additionalProperties": False,
+                                "properties": {
+                                    "key": {"type": _SCALAR},
+                                    "class": {"type": _SCALAR},
+                                    "name": {"type": _SCALAR},
+                                    "polygon": {"type": ["array", "string", "object"]},
+                                },
+                            },
+                        ]
+                    },
+                },
+            ],
+        }
+    ),
+]
