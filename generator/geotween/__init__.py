@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
+from importlib import import_module as _import_module
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
@@ -25,19 +25,25 @@ _PUBLIC = {
 __all__ = sorted(_PUBLIC)
 
 if TYPE_CHECKING:
-    from geotween.data.load import Scene, load
-    from geotween.data.problems import Problem
-    from geotween.export.build import BuildReport, build
-    from geotween.motion.certify import Certificate
-    from geotween.motion.morph import Morph, PiecePair, morph
-    from geotween.motion.tracks import Frame, Track
-    from geotween.scene.errors import SceneError
+    from geotween.data.load import Scene as Scene
+    from geotween.data.load import load as load
+    from geotween.data.problems import Problem as Problem
+    from geotween.export.build import BuildReport as BuildReport
+    from geotween.export.build import build as build
+    from geotween.motion.certify import Certificate as Certificate
+    from geotween.motion.morph import Morph as Morph
+    from geotween.motion.morph import PiecePair as PiecePair
+    from geotween.motion.morph import morph as morph
+    from geotween.motion.tracks import Frame as Frame
+    from geotween.motion.tracks import Track as Track
+    from geotween.scene.errors import SceneError as SceneError
 
 
 def __getattr__(name: str) -> Any:
     if name not in _PUBLIC:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+    value = globals()[name] = getattr(_import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+    return value
 
 
 def __dir__() -> list[str]:

@@ -73,24 +73,25 @@ def load(path: str | os.PathLike[str]) -> Scene:
     faults += reader.faults
     if model is None or faults:
         raise SceneError(sorted(set(faults)))
-    if not any(steps.values()):
-        raise SceneError([document.fault(("steps",), "no step has a polygon", at_key=True)])
 
     labels = [_label(step.label, step.time, i) for i, step in enumerate(model.steps)]
     problems: list[Problem] = []
     sets = []
     for index, label in enumerate(labels):
-        kept, found = repair(steps[index], step=label, winding=index in reader.geojson_steps)
-        problems += _skipped(reader.skipped.get(index, 0), label) + found
-        sets.append(polygon_set(kept))
+        regions, found = _valid(steps[index], label)
+        problems += found
+        sets.append(regions)
+    if not any(map(len, sets)):
+        hint = "what has no area is left out" if problems else ""
+        raise SceneError([document.fault(("steps",), "no step has a polygon", hint, at_key=True)])
     if model.map.fit == "each":
         frame = next(s.bounds for s in sets if len(s))
         sets = [fit_into(s, frame) for s in sets]
     static = []
     for index, layer in enumerate(model.map.layers):
-        kept, found = repair(layers[index], step=f"layer {layer.name or index + 1}")
+        shapes, found = _valid(layers[index], f"layer {layer.name or index + 1}")
         problems += found
-        static.append((layer, polygon_set(kept)))
+        static.append((layer, shapes))
     _check_size(document, sets)
     return Scene(
         file.stem,
@@ -105,38 +106,40 @@ def load(path: str | os.PathLike[str]) -> Scene:
     )
 
 
+@dataclass(frozen=True)
+class _Source:
+    """What a ``polygons`` value holds; how many geometries without area were left out of it."""
+
+    features: list[Feature]
+    skipped: int = 0
+    geojson: bool = False
+
+
 class _SourceReader:
     """Reads the ``polygons`` of steps and layers, inline or from the files they name."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.faults: list[Fault] = []
-        self.skipped: dict[int, int] = {}
-        self.geojson_steps: set[int] = set()
 
-    def all_sources(
-        self, holder: Any, name: str, prefix: Location = ()
-    ) -> dict[int, list[Feature]]:
-        """The features of each member of a list (steps, layers) that has polygons."""
+    def all_sources(self, holder: Any, name: str, prefix: Location = ()) -> dict[int, _Source]:
+        """The source of each member of a list (steps, layers) that has polygons."""
         members = holder.get(name) if isinstance(holder, dict) else None
-        found: dict[int, list[Feature]] = {}
+        found: dict[int, _Source] = {}
         for index, member in enumerate(members if isinstance(members, list) else []):
             if isinstance(member, dict) and "polygons" in member:
                 place = (*prefix, name, index, "polygons")
-                found[index] = self._source(member["polygons"], place, index)
+                found[index] = self._source(member["polygons"], place)
         return found
 
-    def _source(self, value: Any, at: Location, index: int) -> list[Feature]:
+    def _source(self, value: Any, at: Location) -> _Source:
         if isinstance(value, str) and not is_wkt(value):
-            return self._file(value, at, index)
-        if isinstance(value, dict):
-            self.geojson_steps.add(index)
+            return self._file(value, at)
         parser = Parser(lambda where, *words: self._report(self.document, (*at, *where), *words))
         features = parser.features(value)
-        self.skipped[index] = parser.skipped
-        return features
+        return _Source(features, parser.skipped, geojson=isinstance(value, dict))
 
-    def _file(self, name: str, at: Location, index: int) -> list[Feature]:
+    def _file(self, name: str, at: Location) -> _Source:
         named_by = self.document.fault(at, "")
         path = self.document.path.parent / name
         try:
@@ -144,12 +147,14 @@ class _SourceReader:
             value = read_json(source)
         except SceneError as error:
             self.faults += error.faults
-            return []
+            return _Source([])
         parser = Parser(lambda where, *words: self._report(source, where, *words))
-        features = parser.geojson(value)
-        self.skipped[index] = parser.skipped
-        self.geojson_steps.add(index)
-        return features
+        try:
+            features = parser.geojson(value)
+        except RecursionError:
+            self._report(source, (), "nested too deeply", "")
+            return _Source([])
+        return _Source(features, parser.skipped, geojson=True)
 
     def _report(self, document: Document, at: Location, message: str, hint: str) -> None:
         self.faults.append(document.fault(at, message, hint))
@@ -160,14 +165,18 @@ def _label(label: str | None, time: Time | None, index: int) -> str:
         return label
     if time is None:
         return str(index + 1)
-    return f"{time:g}" if isinstance(time, float) else time.isoformat()
+    return f"{time:.15g}" if isinstance(time, float) else time.isoformat()
 
 
-def _skipped(count: int, label: str) -> list[Problem]:
-    if not count:
-        return []
-    message = "features without area (points, lines, null geometries) were left out"
-    return [Problem("no area", "warning", message, (label,), "", float(count), "features")]
+def _valid(source: _Source, label: str) -> tuple[PolygonSet, list[Problem]]:
+    """A source's polygons made valid, and what was mended or left out."""
+    problems = []
+    if source.skipped:
+        message = "features without area (points, lines, null geometries) were left out"
+        count = float(source.skipped)
+        problems.append(Problem("no area", "warning", message, (label,), "", count, "features"))
+    kept, found = repair(source.features, step=label, winding=source.geojson)
+    return polygon_set(kept), problems + found
 
 
 def _check_size(document: Document, sets: list[PolygonSet]) -> None:

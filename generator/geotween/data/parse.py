@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -19,14 +20,16 @@ from geotween.scene.values import UNWRITABLE
 # No map has larger coordinates: the Earth's girth is 4e10 mm.
 LARGEST_COORDINATE = 1e12
 
+_SRID = re.compile(r"\s*SRID=\d+;", re.IGNORECASE)
+# polygons.geojson begins like WKT, and is a path.
 _WKT = re.compile(
-    r"\s*(SRID=\d+;)?\s*(MULTI)?(POLYGON|POINT|LINESTRING)|\s*(SRID=\d+;)?\s*GEOMETRYCOLLECTION",
-    re.IGNORECASE,
+    r"\s*((MULTI)?(POLYGON|POINT|LINESTRING)|GEOMETRYCOLLECTION)(ZM?|M)?(\s|\(|$)", re.IGNORECASE
 )
 _WITH_AREA = ("Polygon", "MultiPolygon", "GeometryCollection")
 _WITHOUT_AREA = ("Point", "MultiPoint", "LineString", "MultiLineString")
 _IDENTITY = ("key", "class", "name")
 _FEATURE_KEYS = (*_IDENTITY, "polygon")
+_NUMERIC = {str, int, float}  # YAML's numbers are texts here; true is no coordinate
 
 Report = Callable[[Location, str, str], None]
 
@@ -202,13 +205,14 @@ class Parser:
         """A ring's points, (n, 2); further ordinates such as heights are dropped."""
         if not isinstance(value, list):
             raise self._invalid(at, "expected a ring: [[x, y], [x, y], [x, y], ...]")
-        try:
-            points = np.array(value, dtype=np.float64)
-        except (TypeError, ValueError):
+        points = _points(value)
+        if points is None:
             points = np.array([self._point(v, (*at, i)) for i, v in enumerate(value)])
         if points.ndim != 2 or points.shape[1] < 2:
             raise self._invalid(at, "expected a ring: [[x, y], [x, y], [x, y], ...]")
-        points = points[:, :2]
+        return self._checked(points[:, :2], at)
+
+    def _checked(self, points: NDArray[np.float64], at: Location) -> NDArray[np.float64]:
         wild = np.flatnonzero(~(np.abs(points) <= LARGEST_COORDINATE).all(axis=1))
         if len(wild):
             x, y = points[wild[0]]
@@ -224,17 +228,16 @@ class Parser:
         return points
 
     def _point(self, value: Any, at: Location) -> tuple[float, float]:
-        try:
-            x, y = (float(v) for v in value[:2])
-        except (TypeError, ValueError, KeyError):
-            message = f"expected a point [x, y], not {_short(value)}"
-            raise self._invalid(at, message) from None
-        return x, y
+        points = _points([value[:2]]) if isinstance(value, list) else None
+        if points is None or points.shape != (1, 2):
+            raise self._invalid(at, f"expected a point [x, y], not {_short(value)}")
+        return float(points[0, 0]), float(points[0, 1])
 
     def _wkt(self, text: str, at: Location) -> Polygon | MultiPolygon:
         try:
-            geometry = shapely.from_wkt(re.sub(r"^\s*SRID=\d+;", "", text, flags=re.IGNORECASE))
-        except shapely.errors.GEOSException as error:
+            with np.errstate(over="ignore"):  # what overflows is met as infinite below
+                geometry = shapely.from_wkt(_SRID.sub("", text, count=1))
+        except (shapely.errors.GEOSException, NotImplementedError) as error:
             reason = str(error).partition(": ")[2] or str(error)
             message = f"this is not WKT: {reason.strip()}"
             hint = "for example POLYGON ((0 0, 9 0, 9 9, 0 0))"
@@ -246,7 +249,7 @@ class Parser:
         for polygon in polygons:
             for ring in (polygon.exterior, *polygon.interiors):
                 if not polygon.is_empty:
-                    self._ring(shapely.get_coordinates(ring), at)
+                    self._checked(shapely.get_coordinates(ring), at)
         return _collect(polygons)
 
     def _no_type(self, kind: Any, at: Location) -> None:
@@ -264,7 +267,20 @@ class Parser:
 
 def is_wkt(text: str) -> bool:
     """Whether a text under ``polygons`` is WKT rather than a path."""
-    return _WKT.match(text) is not None
+    without_srid = _SRID.sub("", text, count=1)
+    return without_srid != text or _WKT.match(text) is not None
+
+
+def _points(value: list[Any]) -> NDArray[np.float64] | None:
+    """Points read all at once, (n, ordinates); None where one of them is no point."""
+    if not all(isinstance(point, list) for point in value):
+        return None
+    if not set(map(type, chain.from_iterable(value))) <= _NUMERIC:
+        return None
+    try:
+        return np.array(value, dtype=np.float64)
+    except (ValueError, OverflowError):
+        return None
 
 
 def _is_point(value: list[Any]) -> bool:

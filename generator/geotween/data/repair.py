@@ -28,7 +28,10 @@ def repair(
     given = np.array([f.geometry for f in features], dtype=object)
     names = [_name(f, index) for index, f in enumerate(features)]
 
-    clean = shapely.remove_repeated_points(given)
+    clean = given
+    points = shapely.get_coordinates(given)
+    if (points[1:] == points[:-1]).all(axis=1).any():  # much the rarer case, and far cheaper to see
+        clean = shapely.remove_repeated_points(given)
     repeated = shapely.get_num_coordinates(given) - shapely.get_num_coordinates(clean)
     problems += [
         Problem(
@@ -43,6 +46,7 @@ def repair(
     invalid = np.flatnonzero(~shapely.is_valid(clean))
     reasons = shapely.is_valid_reason(clean[invalid])
     before = shapely.area(clean)
+    clean = clean.copy()
     clean[invalid] = shapely.make_valid(clean[invalid], method="structure", keep_collapsed=False)
     after = shapely.area(clean)
     for i, reason in zip(invalid.tolist(), reasons, strict=True):

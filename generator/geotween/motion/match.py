@@ -26,6 +26,9 @@ Technique = Callable[[Vertices, Vertices], tuple[NDArray[np.float64], NDArray[np
 # Sums of squared ways closer than this, relative to the largest possible, are ties.
 TIE = 1e-12
 
+# How near to the innermost point of a ring is near enough, as a share of its extent.
+INNERMOST = 1e-3
+
 
 @dataclass(frozen=True, eq=False)
 class _Side:
@@ -100,10 +103,11 @@ def points_at(ring: Vertices, places: NDArray[np.float64]) -> Vertices:
     """The points (m, 2) at ring parameters; at whole ones exactly the vertices."""
     edge = places.astype(np.intp)
     share = (places - edge)[:, None]
-    if not share.any():
-        return np.asarray(ring[edge])
-    start, end = ring[edge], ring[(edge + 1) % len(ring)]
-    return np.asarray(np.where(share == 0, start, start + share * (end - start)))
+    points = np.take(ring, edge, axis=0)
+    if share.any():
+        ways = np.roll(ring, -1, axis=0) - ring
+        points += share * np.take(ways, edge, axis=0)
+    return np.asarray(points)
 
 
 def _subdivision(ring: Vertices, count: int) -> NDArray[np.float64]:
@@ -114,12 +118,19 @@ def _subdivision(ring: Vertices, count: int) -> NDArray[np.float64]:
     lengths = np.hypot(*(np.roll(ring, -1, axis=0) - ring).T)
     quota = spare * lengths / lengths.sum()
     added = np.floor(quota).astype(np.intp)
-    # Largest remainders first; an edge without length has none.
-    rest = np.argsort(added - quota, kind="stable")[: spare - added.sum()]
-    added[rest] += 1
+    added[_largest(quota - added, spare - int(added.sum()))] += 1  # an edge of no length has none
     edge = np.repeat(np.arange(len(ring)), added + 1)
     first = np.cumsum(added + 1) - (added + 1)
     return edge + (np.arange(count) - first[edge]) / (added + 1)[edge]
+
+
+def _largest(values: NDArray[np.float64], count: int) -> NDArray[np.intp]:
+    """The places of the largest values; of equal ones the first. Cost: n."""
+    if not count:
+        return np.empty(0, dtype=np.intp)
+    bound = np.partition(values, -count)[-count]
+    above = np.flatnonzero(values > bound)
+    return np.concatenate([above, np.flatnonzero(values == bound)[: count - len(above)]])
 
 
 def _best_turn(one: Vertices, other: Vertices) -> int:
@@ -171,6 +182,15 @@ def _match_rings(
 
 
 def _vanishing_point(partner: Polygon | Point, ring: Vertices) -> Vertices:
-    """Where a ring without a partner comes from or goes to: its piece's point, or inside itself."""
-    inside = partner if isinstance(partner, Point) else Polygon(ring).point_on_surface()
+    """Where a ring without a partner comes from or goes to: its piece's point, or inside itself.
+
+    Inside itself is its centroid, or its innermost point where the centroid lies outside.
+    """
+    inside = partner
+    if not isinstance(inside, Point):
+        area = Polygon(ring)
+        inside = area.centroid
+        if not area.contains(inside):
+            reach = np.ptp(ring, axis=0).max()
+            inside = shapely.maximum_inscribed_circle(area, tolerance=reach * INNERMOST)
     return np.asarray(shapely.get_coordinates(inside)[0])

@@ -40,13 +40,10 @@ class MatchedPiece:
 def rings_of(polygons: NDArray[np.object_]) -> Rings:
     """The rings of polygons, without the repeated last point. Points have no ring."""
     rings, polygon_of = shapely.get_rings(polygons, return_index=True)
-    points, ring_of = shapely.get_coordinates(rings, return_index=True)
-    ends = np.append(np.flatnonzero(np.diff(ring_of)), len(points) - 1)
-    closed = np.bincount(ring_of, minlength=len(rings)) if len(points) else np.empty(0, np.intp)
-    offsets = np.concatenate([[0], np.cumsum(closed - 1)]).astype(np.intp)
-    keep = np.ones(len(points), dtype=bool)
-    keep[ends[: len(rings)]] = False
-    return Rings(points[keep], offsets, polygon_of)
+    ends = np.cumsum(shapely.get_num_coordinates(rings), dtype=np.intp)
+    vertices = np.delete(shapely.get_coordinates(rings), ends - 1, axis=0)
+    offsets = np.concatenate([[0], ends - np.arange(1, len(ends) + 1)]).astype(np.intp)
+    return Rings(vertices, offsets, polygon_of)
 
 
 def next_vertex(offsets: Offsets) -> NDArray[np.intp]:

@@ -48,6 +48,49 @@ class SharedPieces:
     missing: int
 
 
+@dataclass(frozen=True, eq=False)
+class _Seams:
+    """The seam edges of all pieces at one end; arrays are parallel, one entry an edge.
+
+    ``piece`` and ``edge`` are numbers, ``owner`` that of the polygon which the piece is cut from;
+    ``start`` and ``stop`` (m, 2) are places.
+    """
+
+    piece: NDArray[np.intp]
+    edge: NDArray[np.intp]
+    following: NDArray[np.intp]
+    owner: NDArray[np.intp]
+    start: Vertices
+    stop: Vertices
+
+    @classmethod
+    def at(cls, pieces: Sequence[MatchedPiece], owner: NDArray[np.intp], end: int) -> _Seams | None:
+        """The seams at one end, or None where there are none."""
+        found = [(i, p, np.flatnonzero(p.seams & (1 << end))) for i, p in enumerate(pieces)]
+        found = [(i, p, edges) for i, p, edges in found if len(edges)]
+        if not found:
+            return None
+        piece = np.repeat([i for i, _, _ in found], [len(edges) for _, _, edges in found])
+        nexts = [next_vertex(p.offsets)[edges] for _, p, edges in found]
+        return cls(
+            piece,
+            np.concatenate([edges for _, _, edges in found]),
+            np.concatenate(nexts),
+            owner[piece],
+            np.concatenate([p.vertices[end][edges] for _, p, edges in found]),
+            np.concatenate(
+                [p.vertices[end][after] for (_, p, _), after in zip(found, nexts, strict=True)]
+            ),
+        )
+
+    def corners(self) -> tuple[Vertices, NDArray[np.intp]]:
+        """The different places of seam vertices, and the polygon of each."""
+        places = np.concatenate([self.start, self.stop])
+        owner = np.concatenate([self.owner, self.owner])
+        rows = np.unique(np.column_stack([places, owner]), axis=0)
+        return rows[:, :2], rows[:, 2].astype(np.intp)
+
+
 def share_vertices(
     pieces: Sequence[MatchedPiece], indices: NDArray[np.intp], tolerance: float
 ) -> SharedPieces:
@@ -61,8 +104,13 @@ def share_vertices(
     for _ in range(MAX_ROUNDS):
         missing = 0
         for end in (0, 1):
-            additions = _additions(pieces, indices[:, end], end, tolerance)
-            for piece, (edges, shares, points) in additions.items():
+            seams = _Seams.at(pieces, indices[:, end], end)
+            if seams is None:
+                continue
+            if _snap(pieces, seams, end, tolerance):
+                seams = _Seams.at(pieces, indices[:, end], end)
+                assert seams is not None
+            for piece, (edges, shares, points) in _additions(seams, tolerance).items():
                 pieces[piece] = _with_vertices(pieces[piece], end, edges, shares, points)
                 missing += len(edges)
         if not missing:
@@ -70,50 +118,60 @@ def share_vertices(
     return SharedPieces(tuple(pieces), missing)
 
 
+def _snap(pieces: list[MatchedPiece], seams: _Seams, end: int, tolerance: float) -> bool:
+    """Make seam vertices of one polygon that are the same but for rounding equal to the bit."""
+    corners, owner = seams.corners()
+    tree = shapely.STRtree(_points(corners))
+    one, other = tree.query(_points(corners), predicate="dwithin", distance=tolerance)
+    near = (one < other) & (owner[one] == owner[other])
+    if not near.any():
+        return False
+    canonical = np.arange(len(corners))
+    np.minimum.at(canonical, other[near], one[near])
+    moved = {
+        (int(owner[i]), *corners[i].tolist()): corners[canonical[i]] for i in np.unique(other[near])
+    }
+    for piece in np.unique(seams.piece):
+        vertices = pieces[piece].vertices.copy()
+        mine = seams.piece == piece
+        number = int(seams.owner[np.argmax(mine)])
+        for k in np.unique(np.concatenate([seams.edge[mine], seams.following[mine]])):
+            place = moved.get((number, *vertices[end, k].tolist()))
+            if place is not None:
+                vertices[end, k] = place
+        pieces[piece] = replace(pieces[piece], vertices=vertices)
+    return True
+
+
 Additions = dict[int, tuple[NDArray[np.intp], NDArray[np.float64], Vertices]]
 
 
-def _additions(
-    pieces: Sequence[MatchedPiece], owner: NDArray[np.intp], end: int, tolerance: float
-) -> Additions:
+def _additions(seams: _Seams, tolerance: float) -> Additions:
     """Per piece the edges to part, the share along each, and the vertices to put there."""
-    seamed = [i for i, piece in enumerate(pieces) if (piece.seams & (1 << end)).any()]
-    if not seamed:
-        return {}
-    starts, ends, piece_of, edge_of = [], [], [], []
-    for i in seamed:
-        piece = pieces[i]
-        edges = np.flatnonzero(piece.seams & (1 << end))
-        starts.append(piece.vertices[end][edges])
-        ends.append(piece.vertices[end][next_vertex(piece.offsets)[edges]])
-        piece_of.append(np.full(len(edges), i))
-        edge_of.append(edges)
-    start, stop = np.concatenate(starts), np.concatenate(ends)
-    of_piece, edge = np.concatenate(piece_of), np.concatenate(edge_of)
-
-    corners = np.concatenate([start, stop])
-    corner_owner = np.concatenate([owner[of_piece], owner[of_piece]])
-    _, first = np.unique(np.column_stack([corners, corner_owner]), axis=0, return_index=True)
-    corners, corner_owner = corners[first], corner_owner[first]
-
-    lines: Any = shapely.linestrings(np.stack([start, stop], axis=1))
+    corners, corner_owner = seams.corners()
+    lines: Any = shapely.linestrings(np.stack([seams.start, seams.stop], axis=1))
     tree = shapely.STRtree(lines)
-    corner, hit = tree.query(shapely.points(corners), predicate="dwithin", distance=tolerance)
-    mine = corner_owner[corner] == owner[of_piece[hit]]
+    corner, hit = tree.query(_points(corners), predicate="dwithin", distance=tolerance)
+    mine = corner_owner[corner] == seams.owner[hit]
     corner, hit = corner[mine], hit[mine]
-    way = stop[hit] - start[hit]
+    way = seams.stop[hit] - seams.start[hit]
     length = np.hypot(*way.T)
-    along = ((corners[corner] - start[hit]) * way).sum(axis=1) / np.where(length > 0, length, 1)
+    along = ((corners[corner] - seams.start[hit]) * way).sum(axis=1) / np.where(
+        length > 0, length, 1
+    )
     inner = (along > tolerance) & (along < length - tolerance)
-    corner, hit = corner[inner], hit[inner]
-    share = along[inner] / length[inner]
+    corner, hit, share = corner[inner], hit[inner], along[inner] / length[inner]
 
     found: Additions = {}
-    for i in np.unique(of_piece[hit]):
-        these = np.flatnonzero(of_piece[hit] == i)
-        these = these[np.lexsort((share[these], edge[hit[these]]))]
-        found[int(i)] = (edge[hit[these]], share[these], corners[corner[these]])
+    for piece in np.unique(seams.piece[hit]):
+        these = np.flatnonzero(seams.piece[hit] == piece)
+        these = these[np.lexsort((share[these], seams.edge[hit[these]]))]
+        found[int(piece)] = (seams.edge[hit[these]], share[these], corners[corner[these]])
     return found
+
+
+def _points(places: Vertices) -> Any:
+    return shapely.points(places)
 
 
 def _with_vertices(

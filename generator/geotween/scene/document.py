@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -20,7 +20,7 @@ from geotween.scene.errors import Fault, SceneError
 
 Location = tuple[str | int, ...]
 
-MAX_DEPTH = 200  # nested brackets; beyond some 10,000 the parser itself would break
+MAX_DEPTH = 200  # levels; each takes three of Python's 1,000 calls on the stack
 MAX_EXPANSION = 5_000_000  # values after aliases are expanded; stops an alias bomb
 _NULLS = frozenset({"", "~", "null"})
 _STANDARD_TAG = "tag:yaml.org,2002:"
@@ -56,12 +56,14 @@ class Document:
             raise SceneError([self.fault_at(1, 1, f"nested more than {MAX_DEPTH} levels deep")])
         loader = _Loader(self.text)
         try:
-            return _flattened(loader, loader.get_single_node())
+            root: yaml.Node | None = loader.get_single_node()
+            _merge(root, set())
+            return root
         except yaml.MarkedYAMLError as error:
             raise SceneError([self._broken(error)]) from None
         except yaml.reader.ReaderError as error:
-            line, column = self._place_of(int(error.position))
             code = error.character if isinstance(error.character, int) else ord(error.character)
+            line, column = self.place_of(self.text.index(chr(code)))
             message = f"the character U+{code:04X} may not stand in YAML"
             raise SceneError([self.fault_at(line, column, message, "remove it")]) from None
         finally:
@@ -98,13 +100,14 @@ class Document:
         while line > 1 and (line > len(self.lines) or not self.lines[line - 1].strip()):
             line -= 1  # the parser stops at the end of the file; show the last line written
             column = len(self.lines[line - 1]) + 1 if line <= len(self.lines) else 1
-        problem = error.problem or error.context or "cannot be read"
+        problem = (error.problem or error.context or "cannot be read").removeprefix("but ")
         context = f" ({error.context})" if error.problem and error.context else ""
         return self.fault_at(line, column, f"this is not YAML: {problem}{context}", _hint(problem))
 
-    def _place_of(self, position: int) -> tuple[int, int]:
-        before = self.text[:position]
-        return before.count("\n") + 1, position - before.rfind("\n")
+    def place_of(self, position: int) -> tuple[int, int]:
+        """Line and column, from 1, of a position in the text."""
+        lines = f"{self.text[:position]}|".splitlines()
+        return len(lines), len(lines[-1])
 
 
 def read_text(path: Path, name: str, *, named_by: Fault | None = None) -> str:
@@ -118,8 +121,8 @@ def read_text(path: Path, name: str, *, named_by: Fault | None = None) -> str:
     """
     try:
         raw = path.read_bytes()
-    except OSError as error:
-        reason = (error.strerror or "unknown reason").lower()
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        reason = str(getattr(error, "strerror", None) or error).lower()
         text = f"cannot read {name}: {reason}"
         if named_by is None:
             raise SceneError([Fault(name, 1, 1, text)]) from None
@@ -129,9 +132,9 @@ def read_text(path: Path, name: str, *, named_by: Fault | None = None) -> str:
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        before = raw[: error.start]
-        line, column = before.count(b"\n") + 1, error.start - before.rfind(b"\n")
-        message = f"the byte 0x{raw[error.start]:02X} is not UTF-8"
+        before = error.object[: error.start].decode()  # without a byte order mark
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        message = f"the byte 0x{error.object[error.start]:02X} is not UTF-8"
         raise SceneError([Fault(name, line, column, message, "save the file as UTF-8")]) from None
 
 
@@ -162,10 +165,20 @@ def read_json(document: Document) -> Any:
         return json.loads(document.text)
     except json.JSONDecodeError as error:
         hint = "the file is empty" if not document.text.strip() else "expected GeoJSON"
-        fault = document.fault_at(error.lineno, error.colno, f"not JSON: {error.msg}", hint)
-        raise SceneError([fault]) from None
+        place = document.place_of(error.pos)
+        raise SceneError([document.fault_at(*place, f"not JSON: {error.msg}", hint)]) from None
+    except ValueError:  # Python reads no whole number of more than 4,300 digits
+        raise SceneError([document.fault_at(1, 1, "a number has too many digits")]) from None
     except RecursionError:
         raise SceneError([document.fault_at(1, 1, "nested too deeply")]) from None
+
+
+class _Converted(NamedTuple):
+    """A node's value; how many values it holds, and how deep, once aliases are expanded."""
+
+    value: Any
+    size: int = 1
+    depth: int = 0
 
 
 class _Reader:
@@ -174,42 +187,40 @@ class _Reader:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.faults: list[Fault] = []
-        self._done: dict[int, tuple[Any, int]] = {}
+        self._done: dict[int, _Converted] = {}
         self._open: set[int] = set()
         self._expansion_reported = False
 
     def value(self, node: yaml.Node | None) -> Any:
-        return None if node is None else self._convert(node)[0]
+        return None if node is None else self._convert(node).value
 
-    def _convert(self, node: yaml.Node) -> tuple[Any, int]:
-        """The value of a node, and how many values it holds once aliases are expanded."""
+    def _convert(self, node: yaml.Node) -> _Converted:
         if isinstance(node, yaml.ScalarNode):
             self._check_tag(node)
             plain_null = not node.style and node.value in _NULLS
-            return (None if plain_null else node.value), 1
+            return _Converted(None if plain_null else node.value)
         if id(node) in self._done:
             return self._done[id(node)]
         if id(node) in self._open:
             self._note(node, "an alias may not stand inside what it names")
-            return None, 1
+            return _Converted(None)
         self._open.add(id(node))
         self._check_tag(node)
         result = self._mapping(node) if isinstance(node, yaml.MappingNode) else self._list(node)
         self._open.discard(id(node))
         self._done[id(node)] = result
-        if result[1] > MAX_EXPANSION and not self._expansion_reported:
-            self._expansion_reported = True
-            self._note(node, f"aliases expand to more than {MAX_EXPANSION:,} values")
+        self._check_expansion(node, result)
         return result
 
-    def _mapping(self, node: yaml.MappingNode) -> tuple[dict[str, Any], int]:
+    def _mapping(self, node: yaml.MappingNode) -> _Converted:
         values: dict[str, Any] = {}
         seen: dict[str, yaml.Node] = {}
-        size = 1
+        size = depth = 1
         for key, child in node.value:
             if not isinstance(key, yaml.ScalarNode):
                 self._note(key, "a key must be a text")
                 continue
+            self._check_tag(key)
             if key.value in seen:
                 line = seen[key.value].start_mark.line + 1
                 self._note(
@@ -219,15 +230,30 @@ class _Reader:
                 )
                 continue
             seen[key.value] = key
-            value, count = self._convert(child)
-            size += count
-            if value is not None:
-                values[key.value] = value
-        return values, size
+            converted = self._convert(child)
+            size += converted.size
+            depth = max(depth, 1 + converted.depth)
+            if converted.value is not None:
+                values[key.value] = converted.value
+        return _Converted(values, size, depth)
 
-    def _list(self, node: yaml.Node) -> tuple[list[Any], int]:
+    def _list(self, node: yaml.Node) -> _Converted:
         converted = [self._convert(child) for child in node.value]
-        return [value for value, _ in converted], 1 + sum(count for _, count in converted)
+        return _Converted(
+            [child.value for child in converted],
+            1 + sum(child.size for child in converted),
+            1 + max((child.depth for child in converted), default=0),
+        )
+
+    def _check_expansion(self, node: yaml.Node, converted: _Converted) -> None:
+        if self._expansion_reported:
+            return
+        if converted.size > MAX_EXPANSION:
+            self._expansion_reported = True
+            self._note(node, f"aliases expand to more than {MAX_EXPANSION:,} values")
+        elif converted.depth > MAX_DEPTH:
+            self._expansion_reported = True
+            self._note(node, f"aliases expand to more than {MAX_DEPTH} levels")
 
     def _check_tag(self, node: yaml.Node) -> None:
         if node.tag not in _PLAIN_TAGS:
@@ -251,36 +277,62 @@ def _child(node: yaml.Node | None, step: str | int) -> tuple[yaml.Node, yaml.Nod
     return None
 
 
-def _flattened(loader: Any, root: yaml.Node | None) -> yaml.Node | None:
-    """Resolve merge keys (``<<: *base``); what a mapping says itself comes before what it merges.
+def _merge(node: yaml.Node | None, seen: set[int]) -> None:
+    """Resolve merge keys (``<<: *base``) in place, what is merged before what merges it.
 
-    Only the merged keys are deduplicated here, so that a key written twice stays an error.
+    What a mapping says itself comes before what it merges, the first merged one before the next.
+    Merged keys alone are deduplicated, so that a key written twice stays an error.
     """
-    seen: set[int] = set()
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        if not isinstance(node, yaml.CollectionNode) or id(node) in seen:
-            continue
-        seen.add(id(node))
-        if isinstance(node, yaml.MappingNode):
-            if any(key.tag == _STANDARD_TAG + "merge" for key, _ in node.value):
-                own = [pair for pair in node.value if pair[0].tag != _STANDARD_TAG + "merge"]
-                named = {key.value for key, _ in own if isinstance(key, yaml.ScalarNode)}
-                loader.flatten_mapping(node)
-                merged = node.value[: len(node.value) - len(own)]
-                latest = {key.value: (key, value) for key, value in merged}
-                node.value = [p for name, p in latest.items() if name not in named] + own
-            stack.extend(child for pair in node.value for child in pair)
-        else:
-            stack.extend(node.value)
-    return root
+    if not isinstance(node, yaml.CollectionNode) or id(node) in seen:
+        return
+    seen.add(id(node))
+    if not isinstance(node, yaml.MappingNode):
+        for child in node.value:
+            _merge(child, seen)
+        return
+    for key, value in node.value:
+        _merge(key, seen)
+        _merge(value, seen)
+    own = [pair for pair in node.value if not _is_merge(pair[0])]
+    if len(own) == len(node.value):
+        return
+    named = {key.value for key, _ in own if isinstance(key, yaml.ScalarNode)}
+    merged: dict[str, tuple[yaml.Node, yaml.Node]] = {}
+    for key, value in node.value:
+        for source in _merge_sources(value) if _is_merge(key) else []:
+            for pair in source.value:
+                name = pair[0]
+                if isinstance(name, yaml.ScalarNode) and not _is_merge(name):
+                    merged.setdefault(name.value, pair)
+    node.value = [pair for name, pair in merged.items() if name not in named] + own
+
+
+def _is_merge(key: yaml.Node) -> bool:
+    return bool(key.tag == _STANDARD_TAG + "merge")
+
+
+def _merge_sources(value: yaml.Node) -> list[yaml.MappingNode]:
+    sources = value.value if isinstance(value, yaml.SequenceNode) else [value]
+    for source in sources:
+        if not isinstance(source, yaml.MappingNode):
+            problem = "<< takes a mapping or a list of mappings"
+            raise yaml.MarkedYAMLError(problem=problem, problem_mark=source.start_mark)
+    return list(sources)
 
 
 def _nested_too_deeply(text: str) -> bool:
-    """Whether brackets nest beyond MAX_DEPTH; the parser is asked only where a scan suspects it."""
-    scan = (1 if c in "[{" else -1 for c in re.findall(r"[\[\]{}]", text))
-    if _highest(scan) <= MAX_DEPTH and not re.search(rf"(?:[-?:] +){{{MAX_DEPTH},}}", text):
+    """Whether values nest beyond MAX_DEPTH; the parser is asked only where a scan suspects it.
+
+    A column of indentation opens at most two levels (a mapping and a list in it), an indicator
+    or a bracket one.
+    """
+    brackets = _highest(1 if c in "[{" else -1 for c in re.findall(r"[\[\]{}]", text))
+    indicators = max((len(run) for run in re.findall(r"(?:[-?:] +)+", text)), default=0) // 2
+    columns = max(
+        (len(run) for run in re.findall(r"(?:^|[\r\x85\u2028\u2029]) +", text, re.MULTILINE)),
+        default=0,
+    )
+    if brackets + indicators + 2 * (columns + 1) <= MAX_DEPTH:
         return False
     try:
         return _highest(_nesting(text)) > MAX_DEPTH
@@ -313,7 +365,7 @@ def _hint(problem: str) -> str:
         return "indent with spaces, not tabs; a text that begins with @, ` or % needs quotes"
     if "expected ',' or ']'" in problem or "expected ',' or '}'" in problem:
         return "a bracket is not closed, or a comma is missing"
-    if "single document" in problem:
+    if "another document" in problem:
         return "one scene a file: remove the line ---"
     return "check brackets, quotes and indentation"
 
@@ -321,8 +373,11 @@ def _hint(problem: str) -> str:
 def _similar_file(path: Path) -> str:
     import difflib
 
-    if not path.parent.is_dir():
+    try:
+        names = [entry.name for entry in path.parent.iterdir()]
+    except (FileNotFoundError, NotADirectoryError):
         return f"there is no folder {path.parent.name}/ there"
-    names = [entry.name for entry in path.parent.iterdir()]
+    except (OSError, ValueError):  # a name too long, say
+        names = []
     near = difflib.get_close_matches(path.name, names, n=1)
     return f'did you mean "{near[0]}"?' if near else "paths are relative to the scene file"

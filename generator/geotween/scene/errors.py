@@ -54,7 +54,8 @@ def did_you_mean(word: str, known: Sequence[str]) -> str:
 
 def _excerpt(text: str, column: int) -> tuple[str, str]:
     """The part of a line around a column, and a caret under that column."""
-    line = text.rstrip("\r\n").replace("\t", " ")
+    spaced = text.rstrip("\r\n").replace("\t", " ")
+    line = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in spaced)
     start = max(0, min(column - 1 - EXCERPT_WIDTH // 2, len(line) - EXCERPT_WIDTH))
     shown = line[start : start + EXCERPT_WIDTH]
     lead = "… " if start else ""

@@ -69,7 +69,7 @@ def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
         hint = did_you_mean(str(name), _known_keys(location[:-1]))
         return document.fault(location, f'unknown key "{name}"', hint, at_key=True)
     if kind == "missing":
-        return document.fault(location[:-1], f"{_holder(location)} needs {_a(str(name))}")
+        return document.fault(location[:-1], f'{_called(location[:-1])} needs "{name}"')
     if kind == "too_short" and location == ("steps",):
         count = len(error["input"])  # the model counts only those without a fault of their own
         message = f"a scene needs at least two steps, not {count}"
@@ -84,7 +84,7 @@ def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
     if kind == "value_error":
         return document.fault(location, f'"{name}": {context["error"]}')
     message = _EXPECTED.get(kind) or error["msg"].replace("Input should be", "expected a number")
-    return document.fault(location, f'"{name}": {message}, not {_shown(error["input"])}')
+    return document.fault(location, f"{_called(location)}: {message}, not {_shown(error['input'])}")
 
 
 def _check_times(document: Document, scene: SceneFile) -> list[Fault]:
@@ -107,14 +107,14 @@ def _check_times(document: Document, scene: SceneFile) -> list[Fault]:
         message = f"{len(transition)} transition times for {count} transitions"
         faults.append(document.fault(place, message, "list one for each pair of steps"))
     if transition == "proportional" and len(kinds) < 2:
-        for number, (before, after) in enumerate(pairwise(times), start=1):
-            if before is None or after is None:
-                index = number - 1 if before is None else number
+        for index, time in enumerate(times):
+            if time is None:
                 message = (
                     f"proportional timing needs a time for each step; step {index + 1} has none"
                 )
                 faults.append(document.fault(("steps", index), message))
-            elif before == after:
+        for number, (before, after) in enumerate(pairwise(times), start=1):
+            if before is not None and before == after:
                 message = f"proportional timing: steps {number} and {number + 1} have the same time"
                 faults.append(document.fault(("steps", number, "time"), message))
     elif scene.timing.total is not None and transition != "proportional":
@@ -154,19 +154,19 @@ def _model_in(annotation: Any) -> Any:
     return next((model for model in inner if model is not None), None)
 
 
-def _holder(location: Location) -> str:
-    if len(location) == 1:
+def _called(location: Location) -> str:
+    """What to call the value at a location: the scene, step 3, "fill"."""
+    if not location:
         return "the scene"
-    if location[0] == "steps" and isinstance(location[1], int):
-        return f"step {location[1] + 1}"
-    return f'"{location[-2]}"'
-
-
-def _a(name: str) -> str:
+    *_, holder, name = ("", *location)
+    if isinstance(name, int):
+        return f"{str(holder).removesuffix('s')} {name + 1}"
     return f'"{name}"'
 
 
 def _shown(value: object) -> str:
+    if value is None:
+        return "nothing"
     if isinstance(value, dict):
         return "a mapping"
     if isinstance(value, list):

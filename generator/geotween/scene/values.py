@@ -13,6 +13,9 @@ Time = datetime.date | datetime.datetime | float
 
 _SCALAR: Any = ["string", "number", "boolean"]  # YAML editors type a bare 1984 or no
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+SHORTEST, LONGEST = 0.05, 3600  # seconds of a transition: a frame or two, and an hour
+# Beyond it, double precision no longer tells whole numbers apart.
+LARGEST_TIME = 1e15
 # What XML cannot hold, or UTF-8 cannot write.
 UNWRITABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
 
@@ -49,7 +52,10 @@ def _time(value: Any) -> Time:
         return value
     text = value.strip() if isinstance(value, str) else ""
     if _NUMBER.fullmatch(text):
-        return float(text)
+        number = float(text)
+        if abs(number) > LARGEST_TIME:
+            raise ValueError(f"expected a number of at most {LARGEST_TIME:g}, not {text}")
+        return number
     for read in (datetime.date.fromisoformat, datetime.datetime.fromisoformat):
         try:
             return read(text)
@@ -71,14 +77,14 @@ def _transition(value: Any) -> float | tuple[float, ...] | str:
     except ValueError:
         pass
     raise ValueError(
-        "expected seconds of at least 0.05, a list of them (one for each transition), "
-        "or proportional"
+        f"expected seconds from {SHORTEST:g} to {LONGEST:g}, a list of them (one for each "
+        "transition), or proportional"
     )
 
 
 def _seconds(value: Any) -> float:
     seconds = float(value)
-    if not 0.05 <= seconds <= 3600:
+    if not SHORTEST <= seconds <= LONGEST:
         raise ValueError
     return seconds
 
@@ -96,6 +102,7 @@ StepTime = Annotated[
         {"type": ["string", "number"], "description": "a date, a date-time or a number"}
     ),
 ]
+_TRANSITION_SCHEMA = {"type": "number", "minimum": SHORTEST, "maximum": LONGEST}
 Transition = Annotated[
     float | tuple[float, ...] | str,
     PlainValidator(_transition),
@@ -103,14 +110,14 @@ Transition = Annotated[
         {
             "description": "seconds per transition: one number, a list, or proportional",
             "anyOf": [
-                {"type": "number", "minimum": 0.05},
-                {"type": "array", "items": {"type": "number", "minimum": 0.05}},
+                _TRANSITION_SCHEMA,
+                {"type": "array", "items": _TRANSITION_SCHEMA, "minItems": 1},
                 {"const": "proportional"},
             ],
         }
     ),
 ]
-Seconds = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]
+Seconds = Annotated[float, Field(ge=0, le=LONGEST, allow_inf_nan=False)]
 Pixels = Annotated[float, Field(ge=0, le=20_000, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 

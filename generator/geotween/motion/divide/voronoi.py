@@ -8,7 +8,7 @@ polygon, and none is empty. Cost: n log n for n vertices and seeds together, tim
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -34,7 +34,10 @@ class Mend:
 
 @dataclass(frozen=True, eq=False)
 class _Cut:
-    """A line through a piece; its side nearest to an empty cell's seed becomes that cell."""
+    """A line through a piece; its side nearest to an empty cell's seed becomes that cell.
+
+    ``won`` is what the cell got by it; a later cut may take a part of that.
+    """
 
     cell: int
     piece: Polygon
@@ -42,6 +45,7 @@ class _Cut:
     inward: Points
     middle: Points
     lines: NDArray[np.object_]
+    won: Polygon | None = None
 
 
 def voronoi(
@@ -54,6 +58,8 @@ def voronoi(
     while True:
         faces, labels = _faces(polygon, lines, seeds, cuts)
         pieces, moved = _assemble(faces, labels, polygon.area, len(seeds))
+        if cuts:
+            cuts[-1] = replace(cuts[-1], won=pieces[cuts[-1].cell])
         empty = next((cell for cell, piece in enumerate(pieces) if piece is None), None)
         if empty is None:
             break
@@ -65,17 +71,22 @@ def voronoi(
 
 
 def _seeds(polygon: Polygon, correspondents: Sequence[Polygon]) -> tuple[Points, list[Mend]]:
-    """A distinct seed for each correspondent, (k, 2): its vertex nearest to the centroid."""
+    """A distinct seed for each correspondent, (k, 2): its vertex nearest to the centroid.
+
+    Of vertices equally near, the leftmost, then the lowest: no matter where a ring begins.
+    """
     centre = shapely.get_coordinates(polygon.centroid)[0]
     reach = np.ptp(shapely.get_coordinates(polygon), axis=0).max()
+    tolerance = RELATIVE_TOLERANCE * reach
     seeds = np.empty((0, 2))
     mends = []
     for cell, correspondent in enumerate(correspondents):
         candidates, clashed = shapely.get_coordinates(correspondent), False
         while True:
-            order = np.argsort(np.hypot(*(candidates - centre).T), kind="stable")
+            distances = np.rint(np.hypot(*(candidates - centre).T) / tolerance)
+            order = np.lexsort((candidates[:, 1], candidates[:, 0], distances))
             gaps = np.hypot(*(candidates[order][:, None] - seeds[None]).T).T
-            free = (gaps > RELATIVE_TOLERANCE * reach).all(axis=1)
+            free = (gaps > tolerance).all(axis=1)
             clashed |= not free[0]
             if free.any():
                 break
@@ -116,6 +127,9 @@ def _faces(
     distances = ((places[:, None] - seeds[None]) ** 2).sum(axis=2)
     labels = distances.argmin(axis=1)
     for cut in cuts:
+        if cut.won is not None:
+            labels[shapely.contains_xy(cut.won, *places.T)] = cut.cell
+            continue
         side = (places - cut.middle) @ cut.inward < 0
         there = np.flatnonzero(side & shapely.contains_xy(cut.piece, *places.T))
         nearest = shapely.distance(faces[there], Point(cut.near))
