@@ -19,10 +19,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import geotween
 import numpy as np
 import shapely
 from shapes import Outline, outline_pair
+
+import geotween
 
 BESIDE_FLUBBER = (1_000, 2_000, 5_000, 10_000, 20_000)
 ALONE = (50_000, 100_000)  # flubber's time grows with the square

@@ -6,9 +6,10 @@ Pictures: AB are origin polygons on a line, CD target polygons below them.
 from __future__ import annotations
 
 import pytest
+from shapely.geometry import Polygon, box
+
 from geotween.data.polygons import Feature, PolygonSet, polygon_set
 from geotween.motion.correspond import correspond
-from shapely.geometry import Polygon, box
 
 
 def unkeyed(*polygons: Polygon) -> PolygonSet:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given
+from shapely.geometry import MultiPolygon, Point, Polygon, box
+
 from geotween.data.polygons import Feature, PolygonSet, polygon_set
 from geotween.motion.correspond import correspond
 from geotween.motion.divide import Division, divide
 from geotween.motion.divide.voronoi import voronoi
-from hypothesis import given
-from shapely.geometry import MultiPolygon, Point, Polygon, box
-
 from tests.motion.shapes import polygon_sets, star
 
 SQUARE = box(0, 0, 8, 8)

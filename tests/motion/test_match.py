@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from geotween.data.polygons import Feature, polygon_set
-from geotween.motion.correspond import correspond
-from geotween.motion.divide import divide
-from geotween.motion.match import MatchedPiece, match, points_at, rotation
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from shapely.geometry import Polygon, box
 
+from geotween.data.polygons import Feature, polygon_set
+from geotween.motion.correspond import correspond
+from geotween.motion.divide import divide
+from geotween.motion.match import MatchedPiece, match, points_at, rotation
 from tests.motion.shapes import seeds, star
 
 SQUARE = np.array([[0, 0], [4, 0], [4, 4], [0, 4]], dtype=float)

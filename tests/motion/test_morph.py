@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import geotween
 import numpy as np
 import pytest
 import shapely
-from geotween.motion.morph import resolve
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon, box
 
+import geotween
+from geotween.motion.morph import resolve
 from tests.motion.shapes import blobs, polygon_sets, star, tiles
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import geotween
 import numpy as np
 import pytest
-from geotween.motion.rings import next_vertex
-from geotween.motion.tracks import SEAM_AT_ORIGIN, SEAM_AT_TARGET, Track
 from hypothesis import given
 from shapely.geometry import Polygon, box
 
+import geotween
+from geotween.motion.rings import next_vertex
+from geotween.motion.tracks import SEAM_AT_ORIGIN, SEAM_AT_TARGET, Track
 from tests.motion.shapes import polygon_sets, star
 
 LEFT, RIGHT = box(0, 3, 1, 5), box(7, 3, 8, 5)

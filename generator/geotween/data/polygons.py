@@ -59,7 +59,7 @@ class PolygonSet:
     @property
     def bounds(self) -> NDArray[np.float64]:
         """Smallest x, smallest y, largest x, largest y; NaN for an empty set."""
-        return shapely.total_bounds(self.polygons)
+        return shapely.total_bounds(self.polygons) if len(self) else np.full(4, np.nan)
 
 
 def polygon_set(features: Iterable[Feature]) -> PolygonSet:

@@ -18,8 +18,9 @@ def repair(
     """Valid features without repeated points, and a problem for each mend.
 
     Invalid geometry is rebuilt by shapely's structural method: areas covered by outer rings, less
-    those covered by holes. What has no area is left out. ``winding`` also reports rings wound
-    against RFC 7946; the winding is settled for all input.
+    those covered by holes; a hole that lies outside becomes a polygon. What has no area is left
+    out. ``winding`` also reports rings wound against RFC 7946; the winding is settled for all
+    input.
     """
     if not features:
         return [], []
@@ -28,27 +29,14 @@ def repair(
     given = np.array([f.geometry for f in features], dtype=object)
     names = [_name(f, index) for index, f in enumerate(features)]
 
-    clean = given
-    points = shapely.get_coordinates(given)
-    if (points[1:] == points[:-1]).all(axis=1).any():  # much the rarer case, and far cheaper to see
-        clean = shapely.remove_repeated_points(given)
-    repeated = shapely.get_num_coordinates(given) - shapely.get_num_coordinates(clean)
-    problems += [
-        Problem(
-            "repeated points", "note", "points that repeat the one before were dropped",
-            steps, names[i], float(repeated[i]), "points",
-        )
-        for i in np.flatnonzero(repeated)
-    ]  # fmt: skip
     if winding:
-        problems += _wound_wrongly(clean, steps)
+        problems += _wound_wrongly(given, steps)
 
-    invalid = np.flatnonzero(~shapely.is_valid(clean))
-    reasons = shapely.is_valid_reason(clean[invalid])
-    before = shapely.area(clean)
-    clean = clean.copy()
-    clean[invalid] = shapely.make_valid(clean[invalid], method="structure", keep_collapsed=False)
-    after = shapely.area(clean)
+    valid = given.copy()
+    invalid = np.flatnonzero(~shapely.is_valid(given))
+    reasons = shapely.is_valid_reason(given[invalid])
+    valid[invalid] = shapely.make_valid(given[invalid], method="structure", keep_collapsed=False)
+    before, after = shapely.area(given), shapely.area(valid)
     for i, reason in zip(invalid.tolist(), reasons, strict=True):
         size = max(before[i], after[i])
         problems.append(
@@ -58,6 +46,19 @@ def repair(
                 "of its area changed", "mend it in the data to be sure of its shape",
             )
         )  # fmt: skip
+
+    clean = valid  # a ring that is one point repeated could not have been cleaned before its repair
+    points = shapely.get_coordinates(valid)
+    if (points[1:] == points[:-1]).all(axis=1).any():  # much the rarer case, and far cheaper to see
+        clean = shapely.remove_repeated_points(valid)
+    repeated = shapely.get_num_coordinates(valid) - shapely.get_num_coordinates(clean)
+    problems += [
+        Problem(
+            "repeated points", "note", "points that repeat the one before were dropped",
+            steps, names[i], float(repeated[i]), "points",
+        )
+        for i in np.flatnonzero(repeated)
+    ]  # fmt: skip
 
     box = shapely.total_bounds(clean)
     smallest = (RELATIVE_TOLERANCE * np.nanmax([box[2] - box[0], box[3] - box[1], 0.0])) ** 2

@@ -121,7 +121,7 @@ def _subdivision(ring: Vertices, count: int) -> NDArray[np.float64]:
     added[_largest(quota - added, spare - int(added.sum()))] += 1  # an edge of no length has none
     edge = np.repeat(np.arange(len(ring)), added + 1)
     first = np.cumsum(added + 1) - (added + 1)
-    return edge + (np.arange(count) - first[edge]) / (added + 1)[edge]
+    return np.asarray(edge + (np.arange(count) - first[edge]) / (added + 1)[edge])
 
 
 def _largest(values: NDArray[np.float64], count: int) -> NDArray[np.intp]:

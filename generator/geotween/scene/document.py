@@ -374,7 +374,7 @@ def _similar_file(path: Path) -> str:
     import difflib
 
     try:
-        names = [entry.name for entry in path.parent.iterdir()]
+        names = [entry.name for entry in path.parent.iterdir() if entry.is_file()]
     except (FileNotFoundError, NotADirectoryError):
         return f"there is no folder {path.parent.name}/ there"
     except (OSError, ValueError):  # a name too long, say
