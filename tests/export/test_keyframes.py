@@ -1,0 +1,118 @@
+"""Keyframes: paths by key and paint, seams, backings, ghosts, and what the page is told of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import geotween
+from geotween.export.build import plan_scene
+from geotween.export.keyframes import Keyframes, keyframes
+from geotween.export.page import keyframes_json
+from geotween.export.paint import PALETTE
+from geotween.export.svg import animated_svg
+
+Write = Callable[..., Path]
+WHOLE = "{class: whole, polygon: [[0, 0], [8, 0], [8, 8], [0, 8]]}"
+LEFT = "{class: left, polygon: [[0, 3], [1, 3], [1, 5], [0, 5]]}"
+RIGHT = "{class: right, polygon: [[7, 3], [8, 3], [8, 5], [7, 5]]}"
+SPLIT = f"steps: [{{polygons: [{WHOLE}]}}, {{polygons: [{LEFT}, {RIGHT}]}}]"
+
+
+def frames(write: Write, text: str) -> Keyframes:
+    scene = geotween.load(write(f"title: t\n{text}\n"))
+    return keyframes(scene, plan_scene(scene)[0])
+
+
+def kinds(of: Keyframes, span: int) -> list[tuple[str, str]]:
+    return [(s.slot.kind, s.paints[0].fill) for s in of.spans[span][1]]
+
+
+def test_classes_take_the_palette_in_order_of_appearance(write_scene: Write) -> None:
+    found = frames(write_scene, SPLIT)
+    assert kinds(found, 0) == [("region", PALETTE[0])]
+    assert kinds(found, 2) == [("region", PALETTE[1]), ("region", PALETTE[2])]
+
+
+def test_key_before_class_before_all(write_scene: Write) -> None:
+    style = 'style: {fill: "#111111", class: {b: {fill: "#222222"}}, key: {z: {fill: "#333333"}}}'
+    ring = "polygon: [[0, 0], [1, 0], [1, 1]]"
+    listed = f"[{{key: x, {ring}}}, {{key: y, class: b, {ring}}}, {{key: z, class: b, {ring}}}]"
+    found = frames(write_scene, f"{style}\nsteps: [{{polygons: {listed}}}, {{polygons: []}}]")
+    assert [fill for _, fill in kinds(found, 0)] == ["#111111", "#222222", "#333333"]
+
+
+def test_a_split_into_two_colours_has_two_paths_that_turn(write_scene: Write) -> None:
+    shapes = frames(write_scene, SPLIT).spans[1][1]
+    turning = [tuple(p.fill for p in s.paints) for s in shapes if s.slot.kind == "region"]
+    assert turning == [(PALETTE[0], PALETTE[1]), (PALETTE[0], PALETTE[2])]
+
+
+def test_a_split_of_one_colour_is_one_path(write_scene: Write) -> None:
+    text = 'style: {fill: "#123456", stroke: none}\n' + SPLIT
+    shapes = frames(write_scene, text).spans[1][1]
+    assert [(s.slot.kind, len(s.tracks)) for s in shapes] == [("region", 2)]
+
+
+def test_a_stroked_split_strokes_border_and_seam_apart(write_scene: Write) -> None:
+    text = 'style: {fill: "#123456", stroke: black}\n' + SPLIT
+    shapes = frames(write_scene, text).spans[1][1]
+    assert [(s.slot.kind, s.slot.code) for s in shapes] == [
+        ("region", 0), ("border", 0), ("seam", 1),
+    ]  # fmt: skip
+    assert not shapes[0].paints[0].stroked
+
+
+def test_while_still_of_one_colour_the_parts_have_a_backing(write_scene: Write) -> None:
+    (backing,) = (s for s in frames(write_scene, SPLIT).spans[1][1] if s.slot.kind == "backing")
+    assert backing.show == (0.0, 0.05)
+    assert backing.paints[0].fill == backing.paints[1].fill == PALETTE[0]
+
+
+def test_a_ghost_keeps_the_origins_outline_during_the_transition(write_scene: Write) -> None:
+    found = frames(write_scene, "motion: {ghost: origin}\n" + SPLIT)
+    assert [k for k, _ in kinds(found, 0)] == ["region"]
+    ghost = found.spans[1][1][-1]
+    assert ghost.slot.kind == "ghost"
+    assert np.array_equal(ghost.tracks[0].vertices, found.spans[0][1][0].tracks[0].vertices)
+    assert found.slots()[-1].kind == "ghost"
+
+
+def test_an_empty_step_shows_nothing(write_scene: Write) -> None:
+    found = frames(write_scene, f"steps: [{{polygons: [{WHOLE}]}}, {{polygons: []}}]")
+    assert [len(shapes) for _, shapes in found.spans] == [1, 1, 0]
+
+
+def test_opacity_sits_on_the_group(write_scene: Write) -> None:
+    style = "style: {opacity: 0.5, class: {right: {opacity: 0.2}}}\n"
+    groups = [g["opacity"] for g in keyframes_json(frames(write_scene, style + SPLIT))["groups"]]
+    assert [tuple(g) for g in groups] == [(0.5, 0.5), (0.5, 0.2), (0.2, 0.2)]
+
+
+def decode(track: dict[str, Any]) -> list[np.ndarray]:
+    """The vertices of a track of the page at each key time, in steps of the grid."""
+    moves = [np.cumsum(np.reshape(v, (-1, 2)), axis=0) for v in track["vertices"]]
+    return list(np.cumsum(moves, axis=0))
+
+
+@pytest.mark.parametrize("span", [0, 1, 2])
+def test_the_page_is_told_the_same_vertices(write_scene: Write, span: int) -> None:
+    found = frames(write_scene, SPLIT)
+    told = keyframes_json(found)
+    for shape, written in zip(found.spans[span][1], told["spans"][span]["shapes"], strict=True):
+        for track, number in zip(shape.tracks, written["tracks"], strict=True):
+            decoded = decode(told["tracks"][number])
+            assert np.array_equal(decoded, track.vertices)
+            assert told["tracks"][number]["rings"] == np.diff(track.offsets).tolist()
+
+
+def test_what_does_not_change_is_one_path_of_the_svg_for_all_time(write_scene: Write) -> None:
+    still = "[{key: a, polygon: [[0, 0], [8, 0], [8, 8]]}]"
+    found = frames(write_scene, f"steps: [{{polygons: {still}}}, {{polygons: {still}}}]")
+    svg = animated_svg(found, "t", "")
+    assert svg.count('class="region"') == 1
+    assert "animate" not in svg.split('class="words"')[0]
