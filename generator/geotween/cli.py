@@ -168,7 +168,7 @@ def _report_problems(problems: Iterable[Problem], *, quiet: bool, notes: bool = 
             click.echo(f"  {problem}" if notes else str(problem), err=not notes)
         count = len(listed) - len(serious)
         if count and not notes:
-            click.echo(f"{count} small mends: see geotween check", err=True)
+            click.echo(f"{count} small mend{'s' * (count > 1)}: see geotween check", err=True)
     return bool(serious)
 
 
