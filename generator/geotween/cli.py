@@ -29,11 +29,11 @@ _QUIET = click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 
 @click.group(
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit status: 0 done, 1 the scene or its motion has problems, 2 usage or a bad scene.",
+    epilog="Exit status: 0 done, 1 warnings (check, build --strict), 2 wrong usage, or errors.",
 )
 @click.version_option(__version__, prog_name="geotween", message="%(prog)s %(version)s")
 def main() -> None:
-    r"""Turn polygon sets at successive times into an animated map in one file.
+    """Turn polygon sets at successive times into an animated map in one file.
 
     \b
     Examples:
@@ -57,7 +57,7 @@ def main() -> None:
 @click.option("--strict", is_flag=True, help="Exit with 1 where there are warnings; write nothing.")
 @_QUIET
 def build(scenes: tuple[Path, ...], out: str, formats: str, strict: bool, quiet: bool) -> None:
-    r"""Build scenes into standalone pages and SVGs, with an index of them all.
+    """Build scenes into standalone pages and SVGs, with an index of those named.
 
     \b
     Examples:
@@ -107,7 +107,7 @@ def build(scenes: tuple[Path, ...], out: str, formats: str, strict: bool, quiet:
 @_SCENES
 @_QUIET
 def check(scenes: tuple[Path, ...], quiet: bool) -> None:
-    r"""Validate scenes and plan their motion; print problems and measures.
+    """Validate scenes and plan their motion; print problems and measures.
 
     \b
     Example:
@@ -129,7 +129,7 @@ def check(scenes: tuple[Path, ...], quiet: bool) -> None:
 
 @main.command()
 def schema() -> None:
-    r"""Print the JSON Schema of scene files, for editors.
+    """Print the JSON Schema of scene files, for editors.
 
     \b
     Example:
@@ -173,11 +173,12 @@ def _report_problems(problems: Iterable[Problem], *, quiet: bool, notes: bool = 
 
 
 def _print_built(result: Rendered, folder: Path) -> None:
+    count = len(result.transitions)
     pieces = sum(t.pieces for t in result.transitions)
     sizes = ", ".join(
         f"{folder / name} ({len(content) / 1000:.0f} kB)" for name, content in result.files.items()
     )
-    click.echo(f"{result.name}: {len(result.transitions)} transitions, {pieces} pieces → {sizes}")
+    click.echo(f"{result.name}: {count} transition{'s' * (count != 1)}, {pieces} pieces → {sizes}")
 
 
 def _fail(message: str) -> NoReturn:

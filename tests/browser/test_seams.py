@@ -18,7 +18,8 @@ from tests.browser import drawn
 THREE = """
       - {class: a, polygon: [[1, 1], [3, 0.5], [4, 1.5], [6, 0.4], [7, 1.2], [9, 0.6],
         [10, 2], [13, 2], [12, 4], [12.6, 5], [11, 6], [11.5, 8], [11, 9], [10, 7.5], [9, 8],
-        [8, 6], [7, 5], [6, 6.5], [5, 6], [5, 8], [4, 8], [3, 11], [2.5, 9], [1.5, 8], [2, 6], [1, 4]]}
+        [8, 6], [7, 5], [6, 6.5], [5, 6], [5, 8], [4, 8], [3, 11],
+        [2.5, 9], [1.5, 8], [2, 6], [1, 4]]}
       - {class: b, polygon: [[18, 3], [29, 1], [28, 14], [22, 11], [20, 13], [17, 7]]}
       - {class: c, polygon: [[9, 19], [23, 18], [26, 27], [14, 24], [11, 29]]}
 """
@@ -49,7 +50,9 @@ def inside(page: Page) -> NDArray[np.int64]:
     assert box is not None
     pixels = np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), dtype=int)
     scale = box["width"] / 400
-    top = box["y"] + (64 * scale if selector == "svg" else 0)
+    top = box["y"] - scale * page.evaluate(
+        f"document.querySelector('{selector}').viewBox.baseVal.y"
+    )
     low, high = 24 * scale, 376 * scale
     return pixels[int(top + low) : int(top + high), int(box["x"] + low) : int(box["x"] + high)]
 

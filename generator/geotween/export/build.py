@@ -15,7 +15,7 @@ from geotween.data.load import Scene
 from geotween.data.problems import Problem
 from geotween.export.keyframes import keyframes
 from geotween.export.page import page, render
-from geotween.export.svg import animated_svg, still_svg
+from geotween.export.svg import animated_svg, still_svg, words
 from geotween.motion.morph import Morph, plan, resolve
 
 FORMATS = ("html", "svg")
@@ -118,22 +118,18 @@ def render_scene(
         svg_href = svg_name if "svg" in wanted else ""
         text = page(frames, model, svg_href=svg_href, index_href=index_href)
         files[page_name] = text.encode()
+    origins = [f"Source: {model.source}" if model.source else "", model.credit]
+    source = " · ".join(filter(None, origins))
+    description = model.description or model.subtitle
     if "svg" in wanted:
-        origins = [f"Source: {model.source}" if model.source else "", model.credit]
-        text = animated_svg(
-            frames,
-            model.title,
-            model.description,
-            model.subtitle,
-            " · ".join(filter(None, origins)),
-        )
-        files[svg_name] = text.encode()
+        files[svg_name] = animated_svg(frames, model.title, description, source).encode()
+    around = words(frames, model.title, source) if "svg" in wanted else None
     card = Card(
         model.title,
-        model.description or model.subtitle,
+        description,
         page_name if "html" in wanted else svg_name,
         svg_name if "svg" in wanted else "",
-        Markup(still_svg(frames, model.title, len(scene.steps) // 2, margins=True)),
+        Markup(still_svg(frames, model.title, len(scene.steps) // 2, around)),
     )
     return Rendered(scene.name, files, card, transition_reports(scene, morphs), tuple(problems))
 

@@ -9,7 +9,9 @@ value is written twice.
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Iterable
+from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
 import svgwrite
@@ -22,7 +24,11 @@ from geotween.export.paint import Paint
 from geotween.export.paths import closed_path, path_texts
 from geotween.export.timeline import Span
 
-HEADER, FOOTER = 64, 28  # px above and below the map for its words, where there are any
+MARGIN = 16  # px beside the words
+TITLE, LABEL, SOURCE = 18.0, 16.0, 11.0  # px, the sizes of the words above and below the map
+LEADING = 1.4  # lines in sizes of their font
+BOLD = 1.1  # the width of bold letters to that of others
+LETTER = 0.56  # the width of a letter in sizes of its font; generous, as the font is the reader's
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
@@ -41,9 +47,34 @@ class _Path(svgwrite.path.Path):  # type: ignore[misc]  # svgwrite is untyped
         return xml
 
 
-def still_svg(frames: Keyframes, title: str, step: int = 0, *, margins: bool = False) -> str:
-    """The map at rest at one step, without words; with the animated one's margins if asked."""
-    drawing = _drawing(frames, HEADER * margins, FOOTER * margins, "", "")
+@dataclass(frozen=True)
+class Words:
+    """What the SVG says above and below the map, in lines that fit its width."""
+
+    title: tuple[str, ...]
+    source: tuple[str, ...]
+
+    @property
+    def header(self) -> float:
+        return round(len(self.title) * TITLE * LEADING + LABEL * LEADING + MARGIN)
+
+    @property
+    def footer(self) -> float:
+        return round(len(self.source) * SOURCE * LEADING + MARGIN) if self.source else 0
+
+
+def words(frames: Keyframes, title: str, source: str) -> Words:
+    """A title and a source in lines."""
+    room = frames.page.width - 2 * MARGIN
+    return Words(
+        tuple(textwrap.wrap(title, max(1, int(room / (LETTER * TITLE * BOLD))))),
+        tuple(textwrap.wrap(source, max(1, int(room / (LETTER * SOURCE))))),
+    )
+
+
+def still_svg(frames: Keyframes, title: str, step: int = 0, around: Words | None = None) -> str:
+    """The map at rest at one step; without words, but with the room for them if asked."""
+    drawing = _drawing(frames, around)
     drawing.attribs["class"] = "figure"
     drawing.attribs["role"] = "img"
     drawing.attribs["aria-label"] = title
@@ -57,11 +88,11 @@ def still_svg(frames: Keyframes, title: str, step: int = 0, *, margins: bool = F
     return str(drawing.tostring())
 
 
-def animated_svg(
-    frames: Keyframes, title: str, description: str, subtitle: str = "", source: str = ""
-) -> str:
+def animated_svg(frames: Keyframes, title: str, description: str, source: str = "") -> str:
     """The whole map, playing by SMIL alone."""
-    drawing = _drawing(frames, HEADER, FOOTER, title, description or subtitle)
+    around = words(frames, title, source)
+    drawing = _drawing(frames, around)
+    drawing.set_desc(title=title, desc=description or None)
     drawing.attribs["data-steps"] = json.dumps(
         [
             {"label": label, "start": rest.start / 1000, "end": rest.end / 1000}
@@ -76,27 +107,21 @@ def animated_svg(
         for element in elements:
             groups[slot].add(element)
     drawing.add(stage)
-    _words(drawing, frames, title, subtitle, source)
+    _write(drawing, frames, around)
     return str(drawing.tostring())
 
 
-def _drawing(
-    frames: Keyframes, header: int, footer: int, title: str, description: str
-) -> svgwrite.Drawing:
+def _drawing(frames: Keyframes, around: Words | None) -> svgwrite.Drawing:
     """An empty drawing with background and static layers; the map's corner is at 0, 0."""
-    width, height = frames.page.width, frames.page.height
-    whole = height + header + footer
+    header, footer = (around.header, around.footer) if around else (0, 0)
+    width, whole = frames.page.width, frames.page.height + header + footer
     drawing = svgwrite.Drawing(size=(_px(width), _px(whole)), debug=False)
-    drawing.attribs["viewBox"] = f"0 {-header} {_px(width)} {_px(whole)}"
+    drawing.attribs["viewBox"] = f"0 {_px(-header)} {_px(width)} {_px(whole)}"
     drawing.elements.clear()  # svgwrite's empty defs
-    if title:
-        drawing.set_desc(title=title, desc=description or None)
     if frames.background != "none":
-        drawing.add(
-            drawing.rect(
-                (0, -header), (_px(width), _px(whole)), fill=frames.background, class_="background"
-            )
-        )
+        size = (_px(width), _px(whole))
+        ground = drawing.rect((0, _px(-header)), size, fill=frames.background, class_="background")
+        drawing.add(ground)
     for layer in frames.scenery:
         group = drawing.g(class_="layer static")
         group.attribs["data-layer"] = layer.name
@@ -242,45 +267,46 @@ def _show(
     element.add(_with(drawing.animate(), {**attributes, **_repeat(frames)}))
 
 
-def _words(
-    drawing: svgwrite.Drawing, frames: Keyframes, title: str, subtitle: str, source: str
-) -> None:
-    """Title, step label and source, in the margins above and below the map."""
-    ink = _ink(frames.background)
-    words = drawing.g(class_="words", fill=ink)
-    words.attribs["font-family"] = _FONT
-    left, room = 16, frames.page.width - 32
-    words.add(_text(drawing, title, left, -HEADER + 26, _fitting(18, title, room), weight="700"))
-    halves = [0]
-    for span, _ in frames.spans:
-        if not span.rest:
-            halves.append((span.start + span.end) // 2)
-    halves.append(frames.duration)
-    for label, start, end in zip(frames.labels, halves[:-1], halves[1:], strict=True):
-        text = _text(drawing, label, left, -12, _fitting(16, label, room))
+def _write(drawing: svgwrite.Drawing, frames: Keyframes, around: Words) -> None:
+    """Title and step label above the map, source below it."""
+    group = drawing.g(class_="words", fill=_ink(frames.background))
+    group.attribs["font-family"] = _FONT
+    top = -around.header + MARGIN / 2 + TITLE * (1 - LEADING)
+    for line in around.title:
+        top += TITLE * LEADING
+        group.add(_text(drawing, line, top, TITLE, weight="700"))
+    room = frames.page.width - 2 * MARGIN
+    for label, times in _labels(frames):
+        size = min(LABEL, room / (LETTER * max(len(label), 1)))
+        text = _text(drawing, label, -MARGIN / 2 - LABEL * (LEADING - 1), size)
         text.attribs["class"] = "step"
-        final = end == frames.duration and not frames.loop
-        _show(drawing, text, [(start, end + 1 if final else end)], frames)
-        words.add(text)
-    if source:
-        y = frames.page.height + FOOTER - 10
-        words.add(_text(drawing, source, left, y, _fitting(11, source, room)))
-    drawing.add(words)
+        _show(drawing, text, [times], frames)
+        group.add(text)
+    top = frames.page.height
+    for line in around.source:
+        top += SOURCE * LEADING
+        group.add(_text(drawing, line, top, SOURCE))
+    drawing.add(group)
+
+
+def _labels(frames: Keyframes) -> list[tuple[str, tuple[int, int]]]:
+    """Each step's label and when it is seen: from half-way before to half-way after."""
+    halves = [(span.start + span.end) // 2 for span, _ in frames.spans if not span.rest]
+    end = frames.duration if frames.loop else frames.duration + 1
+    return [
+        (label, (start, stop))
+        for label, start, stop in zip(frames.labels, [0, *halves], [*halves, end], strict=True)
+    ]
 
 
 def _text(
-    drawing: svgwrite.Drawing, words: str, x: float, y: float, size: float, weight: str = ""
+    drawing: svgwrite.Drawing, line: str, y: float, size: float, weight: str = ""
 ) -> BaseElement:
-    text = drawing.text(words, insert=(_px(x), _px(y)))
-    text.attribs["font-size"] = _px(size)
+    text = drawing.text(line, insert=(_px(MARGIN), _px(round(y, 1))))
+    text.attribs["font-size"] = _px(round(size, 1))
     if weight:
         text.attribs["font-weight"] = weight
     return text
-
-
-def _fitting(size: float, words: str, room: float) -> float:
-    """A font size at which a line most likely fits: letters are about 0.6 of it wide."""
-    return round(min(size, room / (0.6 * max(len(words), 1))), 1)
 
 
 def _ink(background: str) -> str:
