@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from shapely.geometry import MultiPolygon, Polygon
 
 from geotween.data.polygons import RELATIVE_TOLERANCE, Feature
 from geotween.data.problems import Problem
@@ -35,7 +36,7 @@ def repair(
     valid = given.copy()
     invalid = np.flatnonzero(~shapely.is_valid(given))
     reasons = shapely.is_valid_reason(given[invalid])
-    valid[invalid] = shapely.make_valid(given[invalid], method="structure", keep_collapsed=False)
+    valid[invalid] = [_made_valid(geometry) for geometry in given[invalid]]
     before, after = shapely.area(given), shapely.area(valid)
     for i, reason in zip(invalid.tolist(), reasons, strict=True):
         size = max(before[i], after[i])
@@ -61,15 +62,34 @@ def repair(
     ]  # fmt: skip
 
     box = shapely.total_bounds(clean)
-    smallest = (RELATIVE_TOLERANCE * np.nanmax([box[2] - box[0], box[3] - box[1], 0.0])) ** 2
+    thinnest = RELATIVE_TOLERANCE * np.nanmax([box[2] - box[0], box[3] - box[1], 0.0])
+    parts, owner = shapely.get_parts(clean, return_index=True)
+    tiny = shapely.area(parts) <= thinnest * shapely.length(parts) / 2
+    lost = np.bincount(owner[tiny], minlength=len(features))
     kept = []
     for i, feature in enumerate(features):
-        if after[i] > smallest:
-            kept.append(replace(feature, geometry=clean[i]))
-        else:
+        if lost[i] or not after[i]:
             message = "a polygon without area was left out"
             problems.append(Problem("no area", "warning", message, steps, names[i]))
+            clean[i] = MultiPolygon(list(parts[(owner == i) & ~tiny]))
+        if not clean[i].is_empty:
+            kept.append(replace(feature, geometry=clean[i]))
     return kept, problems
+
+
+def _made_valid(broken: Polygon | MultiPolygon) -> MultiPolygon:
+    """A geometry rebuilt by the structural method, or from its lines where that one breaks down.
+
+    With rings that share edges it can leave an edge doubled, or raise.
+    """
+    try:
+        valid = shapely.make_valid(broken, method="structure", keep_collapsed=False)
+    except shapely.errors.GEOSException:
+        valid = None
+    if not shapely.is_valid(valid):
+        valid = shapely.make_valid(broken, method="linework")
+    parts = shapely.get_parts(shapely.get_parts(valid))
+    return MultiPolygon([part for part in parts if isinstance(part, Polygon)])
 
 
 def _name(feature: Feature, index: int) -> str:
