@@ -63,6 +63,7 @@ scene.yaml:1:12: this is not YAML: mapping values are not allowed in this contex
 scene.yaml:1:1: the scene needs "title"
      1 | titel: t
        | ^
+       = for example title: A pond dries up
 
 scene.yaml:1:1: unknown key "titel"
      1 | titel: t
@@ -88,6 +89,7 @@ timing, title
 scene.yaml:2:1: a scene needs at least two steps, not 1
      2 | steps:
        | ^
+       = each begins with - and has polygons, for example - polygons: spring.geojson
 """,
             id="one step",
         ),
@@ -107,15 +109,17 @@ scene.yaml:3:15: cannot read lak.geojson: no such file or directory
 scene.yaml:3:16: a ring needs at least three distinct points, not 2
      3 |   - polygons: [[[0, 0], [4, 0], [0, 0]]]
        |                ^
+       = add points: [[x, y], [x, y], [x, y]]
 """,
             id="two points",
         ),
         pytest.param(
             scene("[[[0, 0], [4, .nan], [4, 4]]]"),
             """\
-scene.yaml:3:25: expected a point [x, y], not ['4', '.nan']
+scene.yaml:3:25: expected a point [x, y], not [4, .nan]
      3 |   - polygons: [[[0, 0], [4, .nan], [4, 4]]]
        |                         ^
+       = two decimal numbers with a comma between, such as [9.5, -37.2]
 """,
             id="NaN as YAML writes it",
         ),
@@ -176,7 +180,7 @@ lake.geojson:1:1: not JSON: Expecting value
 lake.geojson:2:15: not JSON: Expecting value
      2 |  "features": [
        |               ^
-       = expected GeoJSON
+       = the file ends too early
 """,
             id="truncated",
         ),
@@ -186,7 +190,7 @@ lake.geojson:2:15: not JSON: Expecting value
 lake.geojson:1:1: not JSON: Expecting value
      1 | <!DOCTYPE html>
        | ^
-       = expected GeoJSON
+       = expected GeoJSON, the one format that is read from files
 """,
             id="HTML",
         ),
@@ -229,7 +233,7 @@ def test_all_faults_of_all_scenes_come_at_once(write_scene: WriteScene) -> None:
         'a.yaml:1:8: "title": expected a text, not a list',
         'a.yaml:2:7: unknown key "widht"',
         'a.yaml:2:26: "padding": expected a number greater than or equal to 0, not "-1"',
-        "a.yaml:4:33: expected a point [x, y], not ['4', 'x']",
+        "a.yaml:4:33: expected a point [x, y], not [4, x]",
         "c.yaml:1:1: expected a mapping (key: value)",
     ]
     assert lines[-1] == "5 errors"
@@ -250,7 +254,10 @@ def test_folder_that_is_a_file_is_told_before_any_work(
     taken.write_text("mine")
     result, out = build(write_scene("not even a scene"), out=taken / inside)
     assert result.exit_code == 2
-    assert result.stderr == f"cannot write to {out}: {taken}: not a folder\n"
+    assert (
+        result.stderr
+        == f"cannot write to {out}: {taken}: is a file, not a folder; name another with -o\n"
+    )
     assert taken.read_text() == "mine"
 
 

@@ -51,7 +51,7 @@ def test_help_lists_the_commands_and_the_exit_status() -> None:
     assert [word for word in ("build", "check", "schema") if f"\n  {word}  " in text] == [
         "build", "check", "schema",
     ]  # fmt: skip
-    assert "0 done, 1 the scene or its motion has problems, 2 usage or a bad scene" in " ".join(
+    assert "0 done, 1 warnings (check, build --strict), 2 wrong usage, or errors" in " ".join(
         text.split()
     )
 
@@ -94,7 +94,7 @@ def test_build_writes_page_svg_and_index(write_scene: WriteScene, tmp_path: Path
     assert (out / "lake.html").read_text(encoding="utf-8").startswith("<!doctype html>")
     assert (out / "lake.svg").read_text(encoding="utf-8").rstrip().endswith("</svg>")
     assert 'href="lake.html"' in (out / "index.html").read_text(encoding="utf-8")
-    assert result.stdout.splitlines()[0].startswith("lake: 1 transitions, 1 pieces → ")
+    assert result.stdout.splitlines()[0].startswith("lake: 1 transition, 1 piece → ")
     assert result.stdout.splitlines()[-1] == f"open {out / 'index.html'}"
     assert result.stderr == ""
 

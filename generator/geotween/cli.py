@@ -168,7 +168,7 @@ def _report_problems(problems: Iterable[Problem], *, quiet: bool, notes: bool = 
             click.echo(f"  {problem}" if notes else str(problem), err=not notes)
         count = len(listed) - len(serious)
         if count and not notes:
-            click.echo(f"{count} small mend{'s' * (count > 1)}: see geotween check", err=True)
+            click.echo(f"{_count(count, 'small mend')}: see geotween check", err=True)
     return bool(serious)
 
 
@@ -178,7 +178,11 @@ def _print_built(result: Rendered, folder: Path) -> None:
     sizes = ", ".join(
         f"{folder / name} ({len(content) / 1000:.0f} kB)" for name, content in result.files.items()
     )
-    click.echo(f"{result.name}: {count} transition{'s' * (count != 1)}, {pieces} pieces → {sizes}")
+    click.echo(f"{result.name}: {_count(count, 'transition')}, {_count(pieces, 'piece')} → {sizes}")
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def _fail(message: str) -> NoReturn:

@@ -15,7 +15,7 @@ from geotween.data.problems import Problem
         (Problem("k", "warning", "bad", ("1990", "2000"), "Aral Sea"),
          "warning: 1990 → 2000, Aral Sea: bad"),
         (Problem("k", "note", "seen", measure=0.12345, unit="of its area", hint="look"),
-         "note: seen (0.123 of its area); look"),
+         "note: seen (12.35% of its area); look"),
     ],
 )  # fmt: skip
 def test_problem_in_words(problem: Problem, words: str) -> None:

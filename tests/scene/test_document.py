@@ -9,8 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geotween.scene.document import MAX_DEPTH, Document, read_json, read_text, read_yaml
+from geotween.scene.document import Document, read_json, read_text
 from geotween.scene.errors import Fault, SceneError
+from geotween.scene.nodes import MAX_DEPTH
+from geotween.scene.plain import read_yaml
 
 
 def document(text: str) -> Document:
@@ -334,15 +336,17 @@ def test_file_that_is_missing(tmp_path: Path) -> None:
 
 # JSON
 
+GEOJSON = "expected GeoJSON, the one format that is read from files"
+
 
 @pytest.mark.parametrize(
     ("text", "place", "hint"),
     [
         ("", (1, 1), "the file is empty"),
         (" \n", (2, 1), "the file is empty"),
-        ('{"a": [1,\n  2', (2, 4), "expected GeoJSON"),
-        ("<!DOCTYPE html>", (1, 1), "expected GeoJSON"),
-        ('{"a": "\u2028",\n b}', (3, 2), "expected GeoJSON"),  # that separator ends a line
+        ('{"a": [1,\n  2', (2, 4), "the file ends too early"),
+        ("<!DOCTYPE html>", (1, 1), GEOJSON),
+        ('{"a": "\u2028",\n b}', (3, 2), GEOJSON),  # that separator ends a line
     ],
 )
 def test_text_that_is_not_json(text: str, place: tuple[int, int], hint: str) -> None:

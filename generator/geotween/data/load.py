@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from geotween.data.checks import doubts
 from geotween.data.parse import Parser, is_wkt
 from geotween.data.polygons import Feature, PolygonSet, fit_into, polygon_set
 from geotween.data.problems import Problem
@@ -19,9 +20,10 @@ from geotween.scene.document import Document, Location, read_json, read_text
 from geotween.scene.errors import Fault, SceneError
 from geotween.scene.model import Layer, SceneFile
 from geotween.scene.read import read_scene
-from geotween.scene.values import Time
+from geotween.scene.values import UNWRITABLE, Time
 
 REGIONS = "regions"  # the one layer that moves
+HIGHEST = 20  # times its width, a page whose height follows from the data
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +68,10 @@ def load(path: str | os.PathLike[str]) -> Scene:
     name = str(path)
     file = Path(path)
     document = Document(name, file, read_text(file, name))
+    if UNWRITABLE.search(file.stem):
+        shown = file.stem.encode(errors="replace").decode()
+        hint = "rename it: pages are called as their scene"
+        raise SceneError([document.fault((), f"the file name {shown} cannot be written", hint)])
     model, values, faults = read_scene(document)
     reader = _SourceReader(document)
     steps = reader.all_sources(values, "steps")
@@ -92,7 +98,8 @@ def load(path: str | os.PathLike[str]) -> Scene:
         shapes, found = _valid(layers[index], f"layer {layer.name or index + 1}")
         problems += found
         static.append((layer, shapes))
-    _check_size(document, sets)
+    problems += doubts(model, sets, labels)
+    _check_size(document, [*sets, *(shapes for _, shapes in static)], model.map.height is None)
     return Scene(
         file.stem,
         file,
@@ -174,17 +181,24 @@ def _valid(source: _Source, label: str) -> tuple[PolygonSet, list[Problem]]:
     if source.skipped:
         message = "features without area (points, lines, null geometries) were left out"
         count = float(source.skipped)
-        problems.append(Problem("no area", "warning", message, (label,), "", count, "features"))
+        hint = "" if source.features else "nothing is left: the step is empty"
+        problems.append(
+            Problem("no area", "warning", message, (label,), "", count, "features", hint)
+        )
     kept, found = repair(source.features, step=label, winding=source.geojson)
     return polygon_set(kept), problems + found
 
 
-def _check_size(document: Document, sets: list[PolygonSet]) -> None:
-    """Raise where double precision cannot tell the data's places apart."""
+def _check_size(document: Document, sets: list[PolygonSet], free_height: bool) -> None:
+    """Raise where double precision cannot tell the data's places apart, or they make no page."""
     everything = np.concatenate([s.polygons for s in sets])
     box = shapely.total_bounds(everything)
     size, reach = (box[2:] - box[:2]).max(), np.abs(box).max()
     if size * 1e12 < reach:
         message = f"the data span {size:.3g} units at {reach:.3g} from the origin: too fine to draw"
         hint = "shift the coordinates nearer to 0"
+        raise SceneError([document.fault(("steps",), message, hint, at_key=True)])
+    if free_height and box[3] - box[1] > HIGHEST * (box[2] - box[0]):
+        message = f"the data are more than {HIGHEST} times as high as wide"
+        hint = "name the page's size: map: {width: 300, height: 900}"
         raise SceneError([document.fault(("steps",), message, hint, at_key=True)])

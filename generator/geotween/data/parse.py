@@ -224,13 +224,14 @@ class Parser:
         distinct = len(np.unique(points, axis=0))
         if distinct < 3:
             message = f"a ring needs at least three distinct points, not {distinct}"
-            raise self._invalid(at, message)
+            raise self._invalid(at, message, "add points: [[x, y], [x, y], [x, y]]")
         return points
 
     def _point(self, value: Any, at: Location) -> tuple[float, float]:
         points = _points([value[:2]]) if isinstance(value, list) else None
         if points is None or points.shape != (1, 2):
-            raise self._invalid(at, f"expected a point [x, y], not {_short(value)}")
+            hint = "two decimal numbers with a comma between, such as [9.5, -37.2]"
+            raise self._invalid(at, f"expected a point [x, y], not {_short(value)}", hint)
         return float(points[0, 0]), float(points[0, 1])
 
     def _wkt(self, text: str, at: Location) -> Polygon | MultiPolygon:
@@ -312,5 +313,5 @@ def _flat(geometry: Any) -> list[Any]:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
+    text = f"[{', '.join(map(str, value))}]" if isinstance(value, list) else repr(value)
     return text if len(text) <= 40 else text[:39] + "…"

@@ -29,6 +29,8 @@ class Problem:
     def __str__(self) -> str:
         where = " → ".join(self.steps)
         subject = ", ".join(part for part in (where, self.piece) if part)
-        amount = f" ({self.measure:.3g} {self.unit})" if self.unit else ""
+        share = self.unit.startswith("of ")
+        number = f"{self.measure:.2%}" if share else f"{self.measure:.3g}"
+        amount = f" ({number} {self.unit})" if self.unit else ""
         hint = f"; {self.hint}" if self.hint else ""
         return f"{self.severity}: {subject + ': ' if subject else ''}{self.message}{amount}{hint}"

@@ -93,7 +93,9 @@ def _made_valid(broken: Polygon | MultiPolygon) -> MultiPolygon:
 
 
 def _name(feature: Feature, index: int) -> str:
-    return str(feature.name or feature.key or f"polygon {index + 1}")
+    if feature.name or feature.key is not None:
+        return feature.name or str(feature.key)
+    return f"polygon {index + 1}"
 
 
 def _in_words(reason: str) -> str:

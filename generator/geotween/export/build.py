@@ -155,7 +155,7 @@ def writable(out_dir: str | os.PathLike[str]) -> Path:
     folder = Path(out_dir)
     nearest = next(p for p in (folder, *folder.absolute().parents) if p.exists())
     if not nearest.is_dir():
-        raise NotADirectoryError(20, "not a folder", str(nearest))
+        raise NotADirectoryError(20, "is a file, not a folder; name another with -o", str(nearest))
     if not os.access(nearest, os.W_OK | os.X_OK):
         raise PermissionError(13, "permission denied", str(nearest))
     return folder
@@ -164,6 +164,9 @@ def writable(out_dir: str | os.PathLike[str]) -> Path:
 def write(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     """Write files under temporary names first, then put all of them in place."""
     folder.mkdir(parents=True, exist_ok=True)
+    for name in files:
+        if (folder / name).is_dir():
+            raise IsADirectoryError(21, "a folder of that name is there", str(folder / name))
     with ExitStack() as clean_up:
         ready: list[tuple[Path, Path]] = []
         for name, content in files.items():

@@ -8,9 +8,10 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from geotween.scene.document import Document, Location, read_yaml
+from geotween.scene.document import Document, Location
 from geotween.scene.errors import Fault, SceneError, did_you_mean
 from geotween.scene.model import SceneFile
+from geotween.scene.plain import read_yaml
 
 _EXPECTED = {
     "string_type": "expected a text",
@@ -24,6 +25,13 @@ _EXPECTED = {
     "model_type": "expected a mapping (key: value)",
     "model_attributes_type": "expected a mapping (key: value)",
     "finite_number": "expected a finite number",
+}
+
+
+_EXAMPLES = {
+    "title": "for example title: A pond dries up",
+    "steps": "each begins with - and has polygons, for example - polygons: spring.geojson",
+    "polygons": "for example polygons: spring.geojson; [] is a step without polygons",
 }
 
 
@@ -69,11 +77,13 @@ def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
         hint = did_you_mean(str(name), _known_keys(location[:-1]))
         return document.fault(location, f'unknown key "{name}"', hint, at_key=True)
     if kind == "missing":
-        return document.fault(location[:-1], f'{_called(location[:-1])} needs "{name}"')
+        message = f'{_called(location[:-1])} needs "{name}"'
+        return document.fault(location[:-1], message, _EXAMPLES.get(str(name), ""))
     if kind == "too_short" and location == ("steps",):
         count = len(error["input"])  # the model counts only those without a fault of their own
         message = f"a scene needs at least two steps, not {count}"
-        return document.fault(location, message, at_key=True) if count < 2 else None
+        hint = _EXAMPLES["steps"]
+        return document.fault(location, message, hint, at_key=True) if count < 2 else None
     if kind == "literal_error":
         known = [word.strip(" '") for word in context["expected"].replace(" or ", ",").split(",")]
         given = error["input"]
