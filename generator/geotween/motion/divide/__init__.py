@@ -17,14 +17,15 @@ from shapely.geometry import Polygon
 from geotween.data.polygons import Identity, PolygonSet
 from geotween.data.problems import Problem
 from geotween.motion.correspond import Correspondence
-from geotween.motion.divide.voronoi import Mend, voronoi
+from geotween.motion.divide.voronoi import Mend
+from geotween.motion.divide.voronoi import voronoi as by_voronoi
 
 NOBODY = -1  # the index of a partner that does not exist: a birth's origin, a death's target
 
 # A polygon and its correspondents in; one piece for each of them, in their order, out.
 Technique = Callable[[Polygon, Sequence[Polygon]], tuple[list[Polygon], list[Mend]]]
 
-TECHNIQUES: Mapping[str, Technique] = {"voronoi": voronoi}
+TECHNIQUES: Mapping[str, Technique] = {"voronoi": by_voronoi}
 
 _MENDS = {
     "coincident seeds": "two Voronoi seeds coincided; the later took its next-nearest vertex",

@@ -22,6 +22,9 @@ Points = NDArray[np.float64]
 # A cell below this share of the polygon's area is rounding, not a piece.
 SLIVER = 1e-12
 
+# A piece below this share of an equal part of the area is no host for empty cells.
+HOST = 1e-3
+
 
 @dataclass(frozen=True)
 class Mend:
@@ -54,20 +57,41 @@ def voronoi(
     """One piece of the polygon for each correspondent, in their order, and what was mended."""
     seeds, mends = _seeds(polygon, correspondents)
     lines = _voronoi_lines(polygon, seeds)
+    faces, labels = _faces(polygon, lines, seeds, [])
+    pieces, moved = _assemble(faces, labels, polygon.area, len(seeds))
+    hosts = _hosts(pieces, seeds, polygon.area)
+    families = {host: [host] for host in hosts.values()}
     cuts: list[_Cut] = []
-    while True:
+    for cell, host in hosts.items():
+        family = families[host]
+        # The largest of what the host was cut into so far, so that no piece becomes a crumb.
+        largest = max((pieces[member] for member in family), key=lambda p: p.area if p else 0)
+        assert largest is not None
+        cuts.append(_cut(cell, Point(seeds[cell]), largest, first=len(family) == 1))
         faces, labels = _faces(polygon, lines, seeds, cuts)
         pieces, moved = _assemble(faces, labels, polygon.area, len(seeds))
-        if cuts:
-            cuts[-1] = replace(cuts[-1], won=pieces[cuts[-1].cell])
-        empty = next((cell for cell, piece in enumerate(pieces) if piece is None), None)
-        if empty is None:
-            break
-        cuts.append(_cut(empty, Point(seeds[empty]), [p for p in pieces if p is not None]))
+        cuts[-1] = replace(cuts[-1], won=pieces[cell])
+        family.append(cell)
     whole = [piece for piece in pieces if piece is not None]
+    if len(whole) < len(seeds):
+        raise ArithmeticError("a Voronoi cell could not be cut; the polygon is too small to divide")
     mends += [Mend("cell in parts", cell, share) for cell, share in moved]
     mends += [Mend("empty cell", c.cell, whole[c.cell].area / polygon.area) for c in cuts]
     return list(shapely.orient_polygons(np.array(whole, dtype=object))), mends
+
+
+def _hosts(pieces: list[Polygon | None], seeds: Points, area: float) -> dict[int, int]:
+    """For each empty cell the piece to cut it from: the one its seed lies in or is nearest to.
+
+    Pieces that are too small to be shared out are passed over.
+    """
+    enough = HOST / len(pieces) * area
+    able = [i for i, piece in enumerate(pieces) if piece is not None and piece.area >= enough]
+    return {
+        cell: able[int(np.argmin(shapely.distance([pieces[i] for i in able], Point(seeds[cell]))))]
+        for cell, piece in enumerate(pieces)
+        if piece is None
+    }
 
 
 def _seeds(polygon: Polygon, correspondents: Sequence[Polygon]) -> tuple[Points, list[Mend]]:
@@ -82,6 +106,7 @@ def _seeds(polygon: Polygon, correspondents: Sequence[Polygon]) -> tuple[Points,
     mends = []
     for cell, correspondent in enumerate(correspondents):
         candidates, clashed = shapely.get_coordinates(correspondent), False
+        longest = correspondent.exterior.length
         while True:
             distances = np.rint(np.hypot(*(candidates - centre).T) / tolerance)
             order = np.lexsort((candidates[:, 1], candidates[:, 0], distances))
@@ -90,9 +115,13 @@ def _seeds(polygon: Polygon, correspondents: Sequence[Polygon]) -> tuple[Points,
             clashed |= not free[0]
             if free.any():
                 break
-            # All its vertices are others' seeds: take points along its edges.
-            longest = max(correspondent.exterior.length / len(candidates), reach * 1e-6)
-            candidates = shapely.get_coordinates(shapely.segmentize(correspondent, longest))
+            # All its vertices are others' seeds: take points along its edges, then around it.
+            longest /= 2
+            if longest > tolerance:
+                candidates = shapely.get_coordinates(shapely.segmentize(correspondent, longest))
+            else:
+                steps = np.arange(1, len(seeds) + 2)[:, None]
+                candidates = candidates[:1] + 2 * tolerance * steps * [1.0, 0.0]
         seeds = np.vstack([seeds, candidates[order[np.argmax(free)]]])
         if clashed:
             mends.append(Mend("coincident seeds", cell))
@@ -131,6 +160,7 @@ def _faces(
             labels[shapely.contains_xy(cut.won, *places.T)] = cut.cell
             continue
         side = (places - cut.middle) @ cut.inward < 0
+        side &= shapely.area(faces) > SLIVER * polygon.area
         there = np.flatnonzero(side & shapely.contains_xy(cut.piece, *places.T))
         nearest = shapely.distance(faces[there], Point(cut.near))
         labels[there[np.lexsort((-shapely.area(faces[there]), nearest))[:1]]] = cut.cell
@@ -200,21 +230,21 @@ def _common_seams(
     )
 
 
-def _cut(cell: int, seed: Point, pieces: list[Polygon]) -> _Cut:
-    """A straight cut through the piece nearest to a seed, half-way to its innermost point."""
-    piece = pieces[int(np.argmin(shapely.distance(pieces, seed)))]
+def _cut(cell: int, seed: Point, piece: Polygon, *, first: bool) -> _Cut:
+    """A straight cut through a piece, for the cell of a seed.
+
+    The first takes a corner, half-way from the point nearest to the seed to the innermost one.
+    Further ones go through the innermost point, across the longer axis: halves, more or less.
+    """
     reach = np.ptp(shapely.get_coordinates(piece), axis=0).max()
-    inner = shapely.get_coordinates(
-        shapely.maximum_inscribed_circle(piece, tolerance=reach * 1e-3)
-    )[0]
+    circle = shapely.maximum_inscribed_circle(piece, tolerance=reach * 1e-3)
+    inner = shapely.get_coordinates(circle)[0]
     near = shapely.get_coordinates(shapely.shortest_line(piece, seed))[0]
-    inward = inner - near
-    if np.hypot(*inward) < RELATIVE_TOLERANCE * reach:  # the seed lies at the innermost point
-        box = shapely.get_coordinates(shapely.oriented_envelope(piece))
-        sides = np.diff(box[:3], axis=0)
-        inward = sides[np.argmax(np.hypot(*sides.T))]
-        near = inner - inward
-    middle = (inner + near) / 2
+    inward, middle = inner - near, (inner + near) / 2
+    if not first or np.hypot(*inward) < RELATIVE_TOLERANCE * reach:
+        sides = np.diff(shapely.get_coordinates(shapely.oriented_envelope(piece))[:3], axis=0)
+        axis = sides[np.argmax(np.hypot(*sides.T))]
+        inward, middle = (axis if axis @ inward >= 0 else -axis), inner
     along = np.array([-inward[1], inward[0]]) * 4 * reach / np.hypot(*inward)
     crossing = shapely.intersection(LineString([middle - along, middle + along]), piece)
     chords = [c for c in shapely.get_parts(crossing) if isinstance(c, LineString)]
