@@ -100,6 +100,25 @@ def test_an_open_seam_is_stroked(browser: Browser, tmp_path: Path, suffix: str) 
 
 
 @FORMATS
+def test_a_border_that_meets_two_others_half_way_shows_no_hairline(
+    browser: Browser, tmp_path: Path, suffix: str
+) -> None:
+    # b and c each lie along half of a's edge, which has no vertex where they meet.
+    tiles = (
+        "[{key: a, polygon: [[0, 0], [13, 0], [19, 30], [0, 30]]}, "
+        "{key: b, polygon: [[13, 0], [30, 0], [30, 15], [16, 15]]}, "
+        "{key: c, polygon: [[16, 15], [30, 15], [30, 30], [19, 30]]}]"
+    )
+    text = (
+        "title: Seams\nmap: {width: 400}\nmotion: {correspondence: key}\n"
+        f'style: {{stroke: none, opacity: 1, fill: "#204060"}}\n'
+        f"steps: [{{polygons: {tiles}}}, {{polygons: {tiles}}}]\n"
+    )
+    for time in (0.5, 1.8):
+        assert_one_colour(at(browser, tmp_path, text, suffix, time))
+
+
+@FORMATS
 def test_abutting_regions_of_one_fill_and_different_keys_show_no_hairline(
     browser: Browser, tmp_path: Path, suffix: str
 ) -> None:

@@ -109,7 +109,7 @@ def test_steps_in_one_frame_each(write_scene: WriteScene) -> None:
 
 
 def test_far_coordinates_are_read_while_they_can_be_told_apart(write_scene: WriteScene) -> None:
-    ring = "[[[1e11, 0], [100000000004, 0], [100000000004, 4]]]"
+    ring = "[[[1e10, 0], [10000000004, 0], [10000000004, 4]]]"
     assert load(write_scene(scene(ring, "[]"))).steps[0].regions.polygons[0].area == 8
 
 

@@ -36,8 +36,21 @@ def tiles(count: int, seed: int) -> list[Polygon]:
     return [p for p in shapely.intersection(cells, square) if p.area > 0]
 
 
+def hulls(count: int, seed: int) -> list[Polygon]:
+    """Disjoint polygons with whole coordinates: many are collinear, touch or coincide."""
+    rng = np.random.default_rng(seed)
+    taken, found = Polygon(), []
+    for _ in range(count):
+        hull = MultiPoint(rng.integers(0, 6, (5, 2)).astype(float)).convex_hull
+        parts = shapely.get_parts(hull.difference(taken))
+        found += [p for p in parts if isinstance(p, Polygon) and p.area > 1e-9]
+        taken = taken.union(hull)
+    return found
+
+
 seeds = st.integers(0, 10_000)
 polygon_sets = st.one_of(
     st.builds(blobs, st.integers(1, 7), seeds, st.integers(0, 4)),
     st.builds(tiles, st.integers(1, 8), seeds),
+    st.builds(hulls, st.integers(1, 6), seeds),
 )

@@ -125,6 +125,40 @@ def test_an_empty_cell_is_cut_from_its_neighbour() -> None:
     assert_partition(SQUARE, pieces)
 
 
+def test_the_cell_of_a_seed_behind_a_corner_is_cut_whatever_the_noding_leaves() -> None:
+    # A Voronoi line touches the square at a corner and leaves a face of rounding there.
+    others = [
+        Polygon([(4, 0), (0, 4), (2, 4), (4, 3), (5, 1)]),
+        Polygon([(1, 0), (0, 2), (0, 3), (5, 1), (4, 0)]),
+    ]
+    assert_partition(box(2, 2, 3, 3), voronoi(box(2, 2, 3, 3), others)[0])
+
+
+@pytest.mark.parametrize("count", [2, 30, 100])
+def test_many_empty_cells_share_their_host_out(count: int) -> None:
+    islands = [box(10 + 3 * i, 1, 11 + 3 * i, 2) for i in range(count)]
+    pieces, mends = voronoi(SQUARE, islands)
+    assert_partition(SQUARE, pieces)
+    assert [m.kind for m in mends] == ["empty cell"] * (count - 1)
+    assert min(p.area for p in pieces) > SQUARE.area / count / 10
+
+
+@pytest.mark.parametrize("size", [8e-7, 8e-9, 1e-12])
+def test_correspondents_too_small_for_seeds_of_their_own(size: float) -> None:
+    tiny = Polygon([(4, 4), (4 + size, 4), (4, 4 + size)])
+    assert_partition(SQUARE, voronoi(SQUARE, [tiny] * 6)[0])
+
+
+def test_a_line_that_all_but_meets_vertices_loses_no_face() -> None:
+    outer = Point(3, 3).buffer(2, quad_segs=3)
+    ring = outer.difference(Point(3, 3).buffer(1, quad_segs=1))
+    others = [
+        Polygon([(0, 3), (3, 2), (5, 0), (2, 0)]),
+        Polygon([(1, 3), (3, 4), (1.5, 2.5), (1, 8 / 3)]),
+    ]
+    assert_partition(ring, voronoi(ring, others)[0])
+
+
 def test_an_exact_grid_of_squares_is_divided_without_a_mend() -> None:
     blocks = [box(i + 0.1, j + 0.1, i + 0.9, j + 0.9) for i in range(8) for j in range(8)]
     pieces, mends = voronoi(SQUARE, blocks)

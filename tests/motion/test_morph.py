@@ -125,6 +125,32 @@ def test_a_bow_tie_is_repaired_and_reported() -> None:
     assert area(m.frame(0).polygons).area == pytest.approx(8)
 
 
+@pytest.mark.parametrize("away", [1e5, 1e8])
+def test_far_from_the_origin_is_like_near_it(away: float) -> None:
+    origin, target = SETS["blobs"]
+    near = geotween.morph(origin, target)
+    far = geotween.morph(
+        *([affinity.translate(p, away, -away) for p in s] for s in (origin, target))
+    )
+    assert not [p for p in far.certificate.problems if p.severity != "note"]
+    for t in (0, 0.5, 1):
+        assert areas_of_pieces(far.frame(t).polygons) == pytest.approx(
+            areas_of_pieces(near.frame(t).polygons), rel=1e-12 * away
+        )
+
+
+def test_too_far_for_its_size_is_refused() -> None:
+    with pytest.raises(ValueError, match="too far from the origin"):
+        geotween.morph([box(1e12, 0, 1e12 + 1, 1)], [])
+    with pytest.raises(ValueError, match="not finite, or beyond"):
+        geotween.morph([box(0, 0, 1e160, 1e160)], [])
+
+
+def test_a_polygon_alone_is_no_set() -> None:
+    with pytest.raises(TypeError, match="origin is a Polygon; expected a sequence"):
+        geotween.morph(box(0, 0, 1, 1), [])  # type: ignore[arg-type]
+
+
 def test_nothing_is_called_valid_that_was_not_proved() -> None:
     m = geotween.morph([box(0, 0, 1, 1)], [box(0, 0, 1, 1)])
     assert m.certificate.valid is False

@@ -13,7 +13,7 @@ import shapely
 
 from geotween.data.checks import doubts
 from geotween.data.parse import Parser, is_wkt
-from geotween.data.polygons import Feature, PolygonSet, fit_into, polygon_set
+from geotween.data.polygons import FARTHEST, Feature, PolygonSet, fit_into, polygon_set
 from geotween.data.problems import Problem
 from geotween.data.repair import repair
 from geotween.scene.document import Document, Location, read_json, read_text
@@ -194,7 +194,7 @@ def _check_size(document: Document, sets: list[PolygonSet], free_height: bool) -
     everything = np.concatenate([s.polygons for s in sets])
     box = shapely.total_bounds(everything)
     size, reach = (box[2:] - box[:2]).max(), np.abs(box).max()
-    if size * 1e12 < reach:
+    if size * FARTHEST < reach:
         message = f"the data span {size:.3g} units at {reach:.3g} from the origin: too fine to draw"
         hint = "shift the coordinates nearer to 0"
         raise SceneError([document.fault(("steps",), message, hint, at_key=True)])

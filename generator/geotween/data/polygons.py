@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import shapely
@@ -15,6 +16,10 @@ Key = str | int
 # Two places nearer than this share of the data's extent are the same place. Double precision
 # leaves some 1e-16 of the coordinates; a map shows 1e-4 of its width.
 RELATIVE_TOLERANCE = 1e-9
+
+# Farther from the origin than this, in extents of the data, double precision no longer tells its
+# places apart as finely as a page shows them.
+FARTHEST = 1e10
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,21 @@ def extent(sets: Sequence[PolygonSet]) -> float:
     if not len(boxes):
         return 0.0
     return float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max())
+
+
+def centre(sets: Sequence[PolygonSet]) -> NDArray[np.float64]:
+    """The middle (2,) of the box around some sets; the origin where all are empty."""
+    boxes = np.array([s.bounds for s in sets if len(s)])
+    if not len(boxes):
+        return np.zeros(2)
+    return np.asarray((boxes[:, :2].min(axis=0) + boxes[:, 2:].max(axis=0)) / 2)
+
+
+def moved(polygons: PolygonSet, way: NDArray[np.float64]) -> PolygonSet:
+    """A set moved by a vector (2,)."""
+    return PolygonSet(
+        shapely.transform(polygons.polygons, partial(np.add, way)), polygons.identities
+    )
 
 
 def fit_into(polygons: PolygonSet, frame: NDArray[np.float64]) -> PolygonSet:

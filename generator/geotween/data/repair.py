@@ -95,7 +95,8 @@ def _made_valid(broken: Polygon | MultiPolygon) -> MultiPolygon:
 def _name(feature: Feature, index: int) -> str:
     if feature.name or feature.key is not None:
         return feature.name or str(feature.key)
-    return f"polygon {index + 1}"
+    position = index if feature.position is None else feature.position
+    return f"polygon {position + 1}"
 
 
 def _in_words(reason: str) -> str:

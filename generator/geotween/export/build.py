@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
+from urllib.parse import quote
 
 from markupsafe import Markup
 
@@ -89,7 +90,9 @@ def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
     for before, after in zip(scene.steps[:-1], scene.steps[1:], strict=True):
         planned = plan(before.regions, after.regions, techniques)
         morphs.append(planned)
-        problems += [replace(p, steps=(before.label, after.label)) for p in planned.problems]
+        problems += [
+            replace(p, steps=(before.label, after.label)) for p in planned.certificate.problems
+        ]
     return morphs, problems
 
 
@@ -113,10 +116,10 @@ def render_scene(
     frames = keyframes(scene, morphs)
     model = scene.model
     svg_name, page_name = f"{scene.name}.svg", f"{scene.name}.html"
+    svg_link = quote(svg_name) if "svg" in wanted else ""
     files: dict[str, bytes] = {}
     if "html" in wanted:
-        svg_href = svg_name if "svg" in wanted else ""
-        text = page(frames, model, svg_href=svg_href, index_href=index_href)
+        text = page(frames, model, svg_href=svg_link, index_href=index_href)
         files[page_name] = text.encode()
     origins = [f"Source: {model.source}" if model.source else "", model.credit]
     source = " · ".join(filter(None, origins))
@@ -127,11 +130,20 @@ def render_scene(
     card = Card(
         model.title,
         description,
-        page_name if "html" in wanted else svg_name,
-        svg_name if "svg" in wanted else "",
-        Markup(still_svg(frames, model.title, len(scene.steps) // 2, around)),
+        quote(page_name if "html" in wanted else svg_name),
+        svg_link,
+        Markup(still_svg(frames, model.title, _shown_step(scene), around)),
     )
-    return Rendered(scene.name, files, card, transition_reports(scene, morphs), tuple(problems))
+    return Rendered(
+        scene.name, files, card, transition_reports(scene, morphs), (*problems, *frames.problems)
+    )
+
+
+def _shown_step(scene: Scene) -> int:
+    """The step for the still: the one nearest to the middle that has polygons."""
+    middle = len(scene.steps) // 2
+    full = [i for i, step in enumerate(scene.steps) if len(step.regions)]
+    return min(full, key=lambda i: (abs(i - middle), i))
 
 
 def gallery(cards: Sequence[Card], title: str, lang: str = "en") -> bytes:
@@ -170,7 +182,7 @@ def write(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     with ExitStack() as clean_up:
         ready: list[tuple[Path, Path]] = []
         for name, content in files.items():
-            handle, temporary = tempfile.mkstemp(prefix=f".{name}.", dir=folder)
+            handle, temporary = tempfile.mkstemp(prefix=".geotween-", dir=folder)
             clean_up.callback(Path(temporary).unlink, missing_ok=True)
             with os.fdopen(handle, "wb") as file:
                 file.write(content)

@@ -8,24 +8,28 @@ its stroke becomes paths of their own, so that a closed seam is not stroked.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+import shapely
 
 from geotween.data.load import REGIONS, Scene
 from geotween.data.polygons import Identity
+from geotween.data.problems import Problem, Severity
 from geotween.export.easing import EASINGS, Spline
 from geotween.export.page_grid import GridTrack, Page, fit_page, moving, resting
 from geotween.export.paint import GHOST, Paint, Painter
 from geotween.export.timeline import Span, timeline
 from geotween.motion.morph import Morph
-from geotween.motion.rings import next_vertex, undirected
+from geotween.motion.rings import next_vertex
 from geotween.motion.tracks import SEAM_AT_ORIGIN, SEAM_AT_TARGET
 
 Kind = Literal["backing", "region", "border", "seam", "ghost"]
 _DRAWN_IN_ORDER: tuple[Kind, ...] = ("backing", "region", "border", "seam", "ghost")
+
+# Steps of the grid by which two edges on one line may part when their ends are rounded.
+ROUNDING = 1.5
 
 # The share of a transition in which the stroke of a seam appears, and in which it goes.
 SEAM_FADE = 0.05
@@ -90,6 +94,7 @@ class Keyframes:
     labels: tuple[str, ...]
     captions: tuple[str, ...]
     spans: tuple[tuple[Span, tuple[Shape, ...]], ...]
+    problems: tuple[Problem, ...] = ()
 
     @property
     def duration(self) -> int:
@@ -165,7 +170,19 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
         tuple(step.label for step in scene.steps),
         tuple(step.caption for step in scene.steps),
         tuple(spans),
+        tuple(p for s, r in zip(scene.steps, rests, strict=True) for p in _too_small(s.label, r)),
     )
+
+
+def _too_small(label: str, tracks: list[GridTrack]) -> list[Problem]:
+    """A problem for a step with polygons that the page's grid cannot show."""
+    lost = sum(not track.vertices.shape[1] for track in tracks)
+    if not lost:
+        return []
+    severity: Severity = "warning" if lost == len(tracks) else "note"
+    message = "polygons smaller than a tenth of a pixel are not drawn"
+    hint = "draw the map larger, or look for static layers that reach far beyond the data"
+    return [Problem("too small", severity, message, (label,), "", float(lost), "polygons", hint)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +213,7 @@ def _shapes(members: Iterable[_Member], painter: Painter) -> list[Shape]:
     shapes = _backings(bundles)
     for bundle in bundles:
         codes = np.unique(np.concatenate([track.seams for track in bundle.tracks]))
-        tracks, paints = tuple(bundle.tracks), bundle.paints
+        tracks, paints = tuple(bundle.tracks), _of_one_width(*bundle.paints)
         if not bundle.stroked or not codes.any():
             shapes.append(Shape(_slot(bundle, "region"), tracks, paints))
             continue
@@ -208,6 +225,15 @@ def _shapes(members: Iterable[_Member], painter: Painter) -> list[Shape]:
         for code in codes[codes > 0]:
             shapes.append(Shape(_slot(bundle, "seam", int(code)), tracks, stroke))
     return shapes
+
+
+def _of_one_width(one: Paint, other: Paint) -> tuple[Paint, Paint]:
+    """Two paints; a stroke that comes or goes does so in its full width."""
+    if one.stroked == other.stroked:
+        return one, other
+    if other.stroked:
+        return replace(one, stroke="none", width=other.width), other
+    return one, replace(other, stroke="none", width=one.width)
 
 
 def _slot(bundle: _Bundle, kind: Kind, code: int = 0) -> Slot:
@@ -265,23 +291,37 @@ def _backings(bundles: list[_Bundle]) -> list[Shape]:
 
 
 def _contacts(bundles: list[_Bundle], end: int, flag: int) -> list[tuple[int, int]]:
-    """Pairs of bundles with a common edge at one end of the span that no stroke covers."""
+    """Pairs of bundles that run along each other at one end of the span, with no stroke there.
+
+    Edges meet where they lie on one line, but for the rounding, and overlap by more than that.
+    """
     if len(bundles) < 2:
         return []
-    edges: list[NDArray[Any]] = []
-    owners: list[NDArray[np.intp]] = []
+    starts, stops, owners = [], [], []
     for number, bundle in enumerate(bundles):
         for track in bundle.tracks:
             points = track.vertices[-end]  # the last key time at the end, the first at the start
             following = points[next_vertex(track.offsets)]
-            bare = np.ones(len(points), dtype=bool)
+            bare = (points != following).any(axis=1)
             if bundle.paints[end].stroked:
-                bare = (track.seams & flag) > 0
-            edges.append(undirected(points[bare], following[bare]))
+                bare &= (track.seams & flag) > 0
+            starts.append(points[bare])
+            stops.append(following[bare])
             owners.append(np.full(int(bare.sum()), number))
-    every, owner = np.concatenate(edges), np.concatenate(owners)
-    order = np.lexsort((owner, *every.T))
-    twin = (every[order][1:] == every[order][:-1]).all(axis=1)
-    pairs = np.column_stack([owner[order][:-1], owner[order][1:]])[twin]
-    pairs = np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
+    start, stop, owner = np.concatenate(starts), np.concatenate(stops), np.concatenate(owners)
+    lines: Any = shapely.linestrings(np.stack([start, stop], axis=1).astype(float))
+    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=ROUNDING)
+    apart = owner[one] < owner[other]
+    one, other = one[apart], other[apart]
+    way = (stop - start)[one].astype(float)
+    length = np.hypot(*way.T)
+    way /= length[:, None]
+    ends = np.stack([start[other] - start[one], stop[other] - start[one]], axis=1)
+    along = np.sort((ends * way[:, None]).sum(axis=2), axis=1)
+    aside = np.abs(ends[..., 0] * way[:, None, 1] - ends[..., 1] * way[:, None, 0]).max(axis=1)
+    overlap = np.minimum(along[:, 1], length) - np.maximum(along[:, 0], 0)
+    # The farther end of a longer edge may lie off by more, as the rounding turns its line.
+    reach = np.maximum(1, (along[:, 1] - along[:, 0]) / length)
+    touching = (aside <= ROUNDING * reach) & (overlap > 2 * ROUNDING)
+    pairs = np.unique(np.column_stack([owner[one], owner[other]])[touching], axis=0)
     return [(int(i), int(j)) for i, j in pairs]

@@ -19,7 +19,7 @@ import svgwrite.path
 from svgwrite.base import BaseElement
 
 from geotween.export.easing import Spline, segments
-from geotween.export.keyframes import SEAM_FADE, Keyframes, Shape, Slot
+from geotween.export.keyframes import SEAM_FADE, Group, Keyframes, Shape, Slot
 from geotween.export.paint import Paint
 from geotween.export.paths import closed_path, path_texts
 from geotween.export.timeline import Span
@@ -103,6 +103,10 @@ def animated_svg(frames: Keyframes, title: str, description: str, source: str = 
     slots = frames.slots()
     stage = drawing.g(class_="stage")
     groups = _groups(drawing, stage, slots)
+    for group, element in {slot.group: groups[slot] for slot in slots}.items():
+        fade = _fade(drawing, frames, group)
+        if fade is not None:
+            element.add(fade)
     for slot, elements in _animated(drawing, frames, slots):
         for element in elements:
             groups[slot].add(element)
@@ -137,7 +141,7 @@ def _groups(
     drawing: svgwrite.Drawing, stage: BaseElement, slots: Iterable[Slot]
 ) -> dict[Slot, BaseElement]:
     """A group element for each group of slots, in order; opacity sits on it."""
-    made: dict[object, BaseElement] = {}
+    made: dict[Group, BaseElement] = {}
     found = {}
     for slot in slots:
         if slot.group not in made:
@@ -148,6 +152,23 @@ def _groups(
             made[slot.group] = stage.add(group)
         found[slot] = made[slot.group]
     return found
+
+
+def _fade(drawing: svgwrite.Drawing, frames: Keyframes, group: Group) -> BaseElement | None:
+    """The opacity of a group over the whole timeline, if it changes."""
+    start, end = (_px(value) for value in group.opacity)
+    spans = [span for span, shapes in frames.spans if any(s.slot.group == group for s in shapes)]
+    if start == end:
+        return None
+    times, values, splines = [0.0], [start], list[Spline | None]()
+    for span in spans:
+        times += [span.start / frames.duration, span.end / frames.duration]
+        values += [start, end]
+        splines += [None, frames.easing]
+    element = _timed(drawing, "opacity", [*times, 1.0], [*values, end], frames)
+    if any(splines):
+        _bend(element, [*splines, None])
+    return element
 
 
 class _Elements:
@@ -169,17 +190,19 @@ class _Elements:
         if same and (texts[0][1], one) in self.still:
             self.shown[self.still[texts[0][1], one]].append(times)
             return
-        path = _path(self.slot, one, texts[0][1] if shape.still else "")
+        path = _path(self.slot, _solid(one, other), texts[0][1] if shape.still else "")
         self.shown[path] = [times]
         if not shape.still:
             path.add(self._animate(span, "d", texts, self.frames.easing))
         if same:
             self.still[texts[0][1], one] = path
-        for name, start in _paint_attributes(one).items():
-            end = _paint_attributes(other).get(name, "")
-            if start != end:
-                easing = self.frames.easing
-                path.add(self._animate(span, name, [(0.0, start), (1.0, end)], easing))
+        for name, start, end in _changes(one, other):
+            path.add(self._animate(span, name, [(0.0, start), (1.0, end)], self.frames.easing))
+        for name, start, end in _switches(one, other):
+            path.attribs[name] = start
+            half = segments(self.frames.easing, [0.0, 0.5, 1.0])[0][1]
+            switch = [(0.0, start), (half, end), (1.0, end)]
+            path.add(self._animate(span, name, switch, None, discrete=True))
         if self.slot.code:
             fade = [(0.0, "0"), (SEAM_FADE, "1")] if self.slot.code & 1 else [(0.0, "1")]
             fade += [(1 - SEAM_FADE, "1"), (1.0, "0")] if self.slot.code & 2 else [(1.0, "1")]
@@ -192,7 +215,13 @@ class _Elements:
         return list(self.shown)
 
     def _animate(
-        self, span: Span, name: str, values: list[tuple[float, str]], easing: Spline | None
+        self,
+        span: Span,
+        name: str,
+        values: list[tuple[float, str]],
+        easing: Spline | None,
+        *,
+        discrete: bool = False,
     ) -> BaseElement:
         """An animation that begins with the span, lasts as long as the map, and repeats."""
         share = span.length / self.total
@@ -204,19 +233,12 @@ class _Elements:
             times.append(1.0)
             texts.append("M0 0" if name == "d" else texts[-1])
             splines.append(None)
-        attributes = {
-            "attributeName": name,
-            "begin": _seconds(span.start),
-            "dur": _seconds(self.total),
-            "keyTimes": ";".join(_share(t) for t in times),
-            "values": ";".join(texts),
-        }
-        if any(splines):
-            attributes["calcMode"] = "spline"
-            attributes["keySplines"] = ";".join(
-                " ".join(_px(v) for v in spline or (0, 0, 1, 1)) for spline in splines
-            )
-        return _with(self.drawing.animate(), {**attributes, **_repeat(self.frames)})
+        element = _timed(self.drawing, name, times, texts, self.frames, span.start)
+        if discrete:
+            element.attribs["calcMode"] = "discrete"
+        elif any(splines):
+            _bend(element, splines)
+        return element
 
 
 def _animated(
@@ -256,15 +278,12 @@ def _show(
         return
     if 0 not in changes:
         changes = {0: "hidden", **changes}
-    element.attribs["visibility"] = "hidden"
-    attributes = {
-        "attributeName": "visibility",
-        "calcMode": "discrete",
-        "dur": _seconds(frames.duration),
-        "keyTimes": ";".join(_share(t / frames.duration) for t in changes),
-        "values": ";".join(changes.values()),
-    }
-    element.add(_with(drawing.animate(), {**attributes, **_repeat(frames)}))
+    if changes[0] == "hidden":
+        element.attribs["visibility"] = "hidden"
+    moments = [t / frames.duration for t in changes]
+    animation = _timed(drawing, "visibility", moments, list(changes.values()), frames)
+    animation.attribs["calcMode"] = "discrete"
+    element.add(animation)
 
 
 def _write(drawing: svgwrite.Drawing, frames: Keyframes, around: Words) -> None:
@@ -277,7 +296,7 @@ def _write(drawing: svgwrite.Drawing, frames: Keyframes, around: Words) -> None:
         group.add(_text(drawing, line, top, TITLE, weight="700"))
     room = frames.page.width - 2 * MARGIN
     for label, times in _labels(frames):
-        size = min(LABEL, room / (LETTER * max(len(label), 1)))
+        size = max(SOURCE / 2, min(LABEL, room / (LETTER * max(len(label), 1))))
         text = _text(drawing, label, -MARGIN / 2 - LABEL * (LEADING - 1), size)
         text.attribs["class"] = "step"
         _show(drawing, text, [times], frames)
@@ -333,6 +352,59 @@ def _paint_attributes(paint: Paint) -> dict[str, str]:
         if paint.dash:
             attributes["stroke-dasharray"] = paint.dash
     return attributes
+
+
+def _solid(one: Paint, other: Paint) -> Paint:
+    """The first of two paints, with the other's colour and stroke where it has none itself."""
+    fill = other.fill if one.fill == "none" else one.fill
+    stroke = one if one.stroked else other
+    return Paint(fill, stroke.stroke, stroke.width, stroke.dash)
+
+
+def _changes(one: Paint, other: Paint) -> list[tuple[str, str, str]]:
+    """What goes from one paint to the other step by step: attribute, start, end."""
+    start, end = (_paint_attributes(p) for p in (_solid(one, other), _solid(other, one)))
+    return [(name, value, end[name]) for name, value in start.items() if value != end[name]]
+
+
+def _switches(one: Paint, other: Paint) -> list[tuple[str, str, str]]:
+    """What switches half-way, as SMIL knows no way between a colour and none."""
+    found: list[tuple[str, str, str]] = []
+    if "none" in (one.fill, other.fill) and one.fill != other.fill:
+        start, end = ("0" if paint.fill == "none" else "1" for paint in (one, other))
+        found.append(("fill-opacity", start, end))
+    if one.stroked != other.stroked:
+        start, end = (_px(paint.width) if paint.stroked else "0" for paint in (one, other))
+        found.append(("stroke-width", start, end))
+    return found
+
+
+def _timed(
+    drawing: svgwrite.Drawing,
+    name: str,
+    times: list[float],
+    values: list[str],
+    frames: Keyframes,
+    begin: int = 0,
+) -> BaseElement:
+    """An animation as long as the map, that repeats as the map does."""
+    attributes = {
+        "attributeName": name,
+        "dur": _seconds(frames.duration),
+        "keyTimes": ";".join(_share(t) for t in times),
+        "values": ";".join(values),
+    }
+    if begin:
+        attributes["begin"] = _seconds(begin)
+    return _with(drawing.animate(), {**attributes, **_repeat(frames)})
+
+
+def _bend(element: BaseElement, splines: list[Spline | None]) -> None:
+    """Ease an animation between each two of its key times."""
+    element.attribs["calcMode"] = "spline"
+    element.attribs["keySplines"] = ";".join(
+        " ".join(_px(v) for v in spline or (0, 0, 1, 1)) for spline in splines
+    )
 
 
 def _with(element: BaseElement, attributes: dict[str, str]) -> BaseElement:

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Point, Polygon
 
 from geotween.data.polygons import (
+    FARTHEST,
     RELATIVE_TOLERANCE,
     Feature,
     Identity,
     Key,
     PolygonSet,
+    centre,
     extent,
     fit_into,
+    moved,
     polygon_set,
 )
 from geotween.data.problems import Problem
@@ -31,6 +35,11 @@ from geotween.motion.divide import NOBODY, Division, divide
 from geotween.motion.match import Matching, match
 from geotween.motion.seams import share_vertices
 from geotween.motion.tracks import Frame, Track, frame
+
+LARGEST = 1e100  # squares of larger coordinates overflow
+
+# Farther from the origin than this, in extents of the data, sets are planned near it.
+NEAR = 1e3
 
 Shape = Polygon | MultiPolygon
 Shapes = Sequence[Shape] | Mapping[str, Shape]
@@ -128,7 +137,8 @@ def morph(
     Raises
     ------
     ValueError
-        For an unknown name, or coordinates that are not finite.
+        For an unknown name, and for coordinates that are not finite, or so far from the origin
+        that double precision cannot tell the polygons' places apart.
     TypeError
         For anything but polygons.
     """
@@ -137,6 +147,9 @@ def morph(
         raise ValueError(f"fit is shared or each, not {fit!r}")
     origin_set, origin_problems = _read(origin, "origin")
     target_set, target_problems = _read(target, "target")
+    size = extent([origin_set, target_set])
+    if size and np.abs(centre([origin_set, target_set])).max() > FARTHEST * size:
+        raise ValueError("the polygons lie too far from the origin for their size; shift them")
     if fit == "each" and len(origin_set):
         target_set = fit_into(target_set, origin_set.bounds)
     planned = plan(origin_set, target_set, techniques)
@@ -170,12 +183,38 @@ def resolve(
 def plan(
     origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str = "regions"
 ) -> Morph:
-    """Correspond, divide, match and interpolate two sets."""
+    """Correspond, divide, match and interpolate two sets.
+
+    Sets far from the origin are planned near it, where coordinates have digits to spare.
+    """
+    size, middle = extent([origin, target]), centre([origin, target])
+    if size and np.abs(middle).max() > NEAR * size:
+        near = _plan(moved(origin, -middle), moved(target, -middle), techniques, layer)
+        return _moved_back(near, origin, target, middle)
+    return _plan(origin, target, techniques, layer)
+
+
+def _plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str) -> Morph:
     related = correspond(origin, target, techniques.correspondence)
     divided = divide(related, techniques.division)
     tolerance = RELATIVE_TOLERANCE * extent([origin, target])
     tracks, problems = interpolate(match(divided, techniques.matching), layer, tolerance)
     return Morph(tracks, divided, (*divided.problems, *problems))
+
+
+def _moved_back(
+    morph: Morph, origin: PolygonSet, target: PolygonSet, way: NDArray[np.float64]
+) -> Morph:
+    back = partial(np.add, way)
+    division = replace(
+        morph.division,
+        origin=origin,
+        target=target,
+        origin_pieces=shapely.transform(morph.division.origin_pieces, back),
+        target_pieces=shapely.transform(morph.division.target_pieces, back),
+    )
+    tracks = tuple(replace(track, vertices=track.vertices + way) for track in morph.tracks)
+    return Morph(tracks, division, morph.problems)
 
 
 def interpolate(
@@ -191,7 +230,7 @@ def interpolate(
     if shared.missing:
         message = "seams have vertices on one side only and may show as hairlines"
         problems.append(
-            Problem("open seam", "warning", message, measure=shared.missing, unit="vertices")
+            Problem("open seam", "note", message, measure=shared.missing, unit="vertices")
         )
     origin_keys = {i.key for i in division.origin.identities if i.keyed}
     target_keys = {i.key for i in division.target.identities if i.keyed}
@@ -226,6 +265,9 @@ def _bearer(
 
 def _read(shapes: Shapes, name: str) -> tuple[PolygonSet, list[Problem]]:
     """A polygon set from what ``morph`` was given; positions count in the sequence as given."""
+    if isinstance(shapes, Polygon | MultiPolygon):
+        what = type(shapes).__name__
+        raise TypeError(f"{name} is a {what}; expected a sequence of polygons, or a mapping")
     keyed = isinstance(shapes, Mapping)
     features = []
     items: Iterable[tuple[Key, Shape]] = (
@@ -237,8 +279,8 @@ def _read(shapes: Shapes, name: str) -> tuple[PolygonSet, list[Problem]]:
             raise TypeError(
                 f"{what} is a {type(shape).__name__}; expected a Polygon or MultiPolygon"
             )
-        if not np.isfinite(shapely.get_coordinates(shape)).all():
-            raise ValueError(f"{what} has coordinates that are not finite")
+        if not (np.abs(shapely.get_coordinates(shape)) < LARGEST).all():
+            raise ValueError(f"{what} has coordinates that are not finite, or beyond {LARGEST:g}")
         if not shape.is_empty:
             flat = shapely.force_2d(shape)
             features.append(Feature(flat, key if keyed else None, position=position))

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from geotween.motion.rings import MatchedPiece, Rings, Vertices, next_vertex, undirected
 
 # A vertex given to one side at the origin may land on a seam at the target, whose other side then
-# needs it, and so on; such chains end where a piece's own border begins.
+# needs it, and so on. Such chains nearly always end soon, where a piece's own border begins; a few,
+# in symmetric shapes, go round in a circle.
 MAX_ROUNDS = 50
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import shapely
@@ -21,6 +22,10 @@ Points = NDArray[np.float64]
 
 # A cell below this share of the polygon's area is rounding, not a piece.
 SLIVER = 1e-12
+
+# How far lines are nudged where noding fails, in shares of the extent, how often, and which way:
+# along no axis and no diagonal.
+NUDGE, NUDGES, ASKEW = 1e-8, 9, np.array([0.618, 0.786])
 
 # A piece below this share of an equal part of the area is no host for empty cells.
 HOST = 1e-3
@@ -147,11 +152,7 @@ def _faces(
 
     All linework is noded at once, so that faces share their vertices to the bit.
     """
-    linework = np.concatenate([[polygon.boundary], lines, *(cut.lines for cut in cuts)])
-    faces = shapely.get_parts(shapely.polygonize([shapely.union_all(linework)]))
-    inside = shapely.point_on_surface(faces)
-    shapely.prepare(polygon)
-    faces = faces[shapely.contains(polygon, inside)]
+    faces = _faces_between(polygon, np.concatenate([lines, *(cut.lines for cut in cuts)]))
     places = shapely.get_coordinates(shapely.point_on_surface(faces))
     distances = ((places[:, None] - seeds[None]) ** 2).sum(axis=2)
     labels = distances.argmin(axis=1)
@@ -165,6 +166,26 @@ def _faces(
         nearest = shapely.distance(faces[there], Point(cut.near))
         labels[there[np.lexsort((-shapely.area(faces[there]), nearest))[:1]]] = cut.cell
     return faces, labels
+
+
+def _faces_between(polygon: Polygon, lines: NDArray[np.object_]) -> NDArray[np.object_]:
+    """The faces into which lines part a polygon.
+
+    A line that all but meets a vertex can be noded wrongly and lose a face. Then all lines are
+    nudged together, by less than anybody can see.
+    """
+    reach = np.ptp(shapely.get_coordinates(polygon), axis=0).max()
+    shapely.prepare(polygon)
+    found = []
+    for nudge in range(NUDGES):
+        moved = shapely.transform(lines, partial(np.add, nudge * NUDGE * reach * ASKEW))
+        noded = shapely.union_all(np.concatenate([[polygon.boundary], moved]))
+        faces = shapely.get_parts(shapely.polygonize([noded]))
+        faces = faces[shapely.contains(polygon, shapely.point_on_surface(faces))]
+        found.append((abs(shapely.area(faces).sum() / polygon.area - 1), nudge, faces))
+        if found[-1][0] < SLIVER * 100:
+            break
+    return min(found, key=lambda attempt: attempt[:2])[2]
 
 
 def _assemble(
