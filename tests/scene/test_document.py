@@ -20,7 +20,10 @@ def document(text: str) -> Document:
 
 
 def values(text: str) -> Any:
-    return read_yaml(document(text))
+    value, found = read_yaml(document(text))
+    if found:
+        raise SceneError(sorted(found))
+    return value
 
 
 def faults(text: str) -> tuple[Fault, ...]:

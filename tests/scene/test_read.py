@@ -46,6 +46,17 @@ def hints(text: str) -> list[str]:
     return [fault.hint for fault in scene_and_faults(text)[1]]
 
 
+def test_a_key_that_stands_twice_hides_no_other_fault() -> None:
+    text = "title: t\ntitle: u\nsteps:\n  - {polygons: [], hold: x}\n  - {polygons: []}\n"
+    assert [line for line, _, _ in told(text)] == [2, 4]
+
+
+def test_times_are_checked_in_a_scene_with_other_faults() -> None:
+    steps = "steps:\n  - {time: 1990, polygons: []}\n  - {time: 2024-01-05, polygons: []}\n"
+    text = f"title: [t]\ntiming: {{total: 3, speed: fast}}\n{steps}"
+    assert [line for line, _, _ in told(text)] == [1, 2, 2, 5]
+
+
 def test_shortest_scene_has_a_title_and_two_steps() -> None:
     model = scene()
     assert model.title == "t"

@@ -22,19 +22,22 @@ _PLAIN_TAGS = frozenset(
 )
 
 
-def read_yaml(document: Document) -> Any:
-    """The document as dicts, lists, texts and None; keys without a value are left out.
+def read_yaml(document: Document) -> tuple[Any, list[Fault]]:
+    """The document as dicts, lists, texts and None, and what is wrong with it.
+
+    Keys without a value are left out. Duplicate keys, keys that are not text and foreign tags are
+    faults that leave something to go on with.
 
     Raises
     ------
     SceneError
-        For broken YAML, duplicate keys, keys that are not text, foreign tags, loops of aliases.
+        Where there is nothing to go on with: broken YAML, aliases in a loop or beyond all bounds.
     """
     reader = _Reader(document)
     value = reader.value(document.root)
-    if reader.faults:
+    if reader.endless:
         raise SceneError(sorted(reader.faults))
-    return value
+    return value, reader.faults
 
 
 class _Converted(NamedTuple):
@@ -51,9 +54,9 @@ class _Reader:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.faults: list[Fault] = []
+        self.endless = False
         self._done: dict[int, _Converted] = {}
         self._open: set[int] = set()
-        self._expansion_reported = False
 
     def value(self, node: yaml.Node | None) -> Any:
         return None if node is None else self._convert(node).value
@@ -66,6 +69,7 @@ class _Reader:
         if id(node) in self._done:
             return self._done[id(node)]
         if id(node) in self._open:
+            self.endless = True
             self._note(node, "an alias may not stand inside what it names")
             return _Converted(None)
         self._open.add(id(node))
@@ -112,13 +116,13 @@ class _Reader:
         )
 
     def _check_expansion(self, node: yaml.Node, converted: _Converted) -> None:
-        if self._expansion_reported:
+        if self.endless:
             return
         if converted.size > MAX_EXPANSION:
-            self._expansion_reported = True
+            self.endless = True
             self._note(node, f"aliases expand to more than {MAX_EXPANSION:,} values")
         elif converted.depth > MAX_DEPTH:
-            self._expansion_reported = True
+            self.endless = True
             self._note(node, f"aliases expand to more than {MAX_DEPTH} levels")
 
     def _check_tag(self, node: yaml.Node) -> None:

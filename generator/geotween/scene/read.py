@@ -6,12 +6,13 @@ import datetime
 from itertools import pairwise
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from geotween.scene.document import Document, Location
 from geotween.scene.errors import Fault, SceneError, did_you_mean
 from geotween.scene.model import SceneFile
 from geotween.scene.plain import read_yaml
+from geotween.scene.values import Seconds, StepTime, Transition
 
 _EXPECTED = {
     "string_type": "expected a text",
@@ -35,6 +36,11 @@ _EXAMPLES = {
 }
 
 
+_TIME: TypeAdapter[Any] = TypeAdapter(StepTime)
+_TRANSITION: TypeAdapter[Any] = TypeAdapter(Transition)
+_SECONDS: TypeAdapter[Any] = TypeAdapter(Seconds)
+
+
 def read_scene(document: Document) -> tuple[SceneFile | None, Any, list[Fault]]:
     """The model of a scene, the plain values behind it, and what is wrong with it.
 
@@ -44,19 +50,19 @@ def read_scene(document: Document) -> tuple[SceneFile | None, Any, list[Fault]]:
     Raises
     ------
     SceneError
-        Where the text is not YAML at all.
+        Where the text is not YAML at all, or no mapping.
     """
-    values = read_yaml(document)
+    values, faults = read_yaml(document)
     if not isinstance(values, dict):
         hint = "a scene begins with a title and two steps"
         message = "the scene is empty" if values is None else "expected a mapping (key: value)"
-        raise SceneError([document.fault_at(1, 1, message, hint)])
+        raise SceneError([*faults, document.fault_at(1, 1, message, hint)])
+    faults += _check_times(document, values)
     try:
-        scene = SceneFile.model_validate(values)
+        return SceneFile.model_validate(values), values, faults
     except ValidationError as error:
-        faults = (_fault(document, dict(item)) for item in error.errors())
-        return None, values, [fault for fault in faults if fault is not None]
-    return scene, values, _check_times(document, scene)
+        found = (_fault(document, dict(item)) for item in error.errors())
+        return None, values, faults + [fault for fault in found if fault is not None]
 
 
 def scene_schema() -> dict[str, Any]:
@@ -97,10 +103,17 @@ def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
     return document.fault(location, f"{_called(location)}: {message}, not {_shown(error['input'])}")
 
 
-def _check_times(document: Document, scene: SceneFile) -> list[Fault]:
-    """What the model cannot see field by field: times that fit each other and the timing."""
+def _check_times(document: Document, values: dict[str, Any]) -> list[Fault]:
+    """What the model cannot see field by field: times that fit each other and the timing.
+
+    Reads the plain values, so as to find these in a scene that has other faults too.
+    """
+    steps, timing = values.get("steps"), values.get("timing", {})
+    if not isinstance(steps, list) or not isinstance(timing, dict):
+        return []
+    written = [step.get("time") if isinstance(step, dict) else None for step in steps]
+    times = [_as(_TIME, time) for time in written]
     faults = []
-    times = [step.time for step in scene.steps]
     kinds = {_kind(time) for time in times if time is not None}
     if len(kinds) > 1:
         odd = next(i for i, t in enumerate(times) if t is not None and _kind(t) != _kind_of(times))
@@ -111,14 +124,14 @@ def _check_times(document: Document, scene: SceneFile) -> list[Fault]:
                 "write all times of a scene as dates, or as date-times, or as numbers",
             )
         )
-    transition, count = scene.timing.transition, len(scene.steps) - 1
+    transition, count = _as(_TRANSITION, timing.get("transition", "2")), len(steps) - 1
     place: Location = ("timing", "transition")
     if isinstance(transition, tuple) and len(transition) != count:
         message = f"{len(transition)} transition times for {count} transitions"
         faults.append(document.fault(place, message, "list one for each pair of steps"))
     if transition == "proportional" and len(kinds) < 2:
         for index, time in enumerate(times):
-            if time is None:
+            if time is None and written[index] is None:
                 message = (
                     f"proportional timing needs a time for each step; step {index + 1} has none"
                 )
@@ -127,10 +140,20 @@ def _check_times(document: Document, scene: SceneFile) -> list[Fault]:
             if before is not None and before == after:
                 message = f"proportional timing: steps {number} and {number + 1} have the same time"
                 faults.append(document.fault(("steps", number, "time"), message))
-    elif scene.timing.total is not None and transition != "proportional":
+    elif (
+        transition not in ("proportional", None) and _as(_SECONDS, timing.get("total")) is not None
+    ):
         message = '"total" goes with transition: proportional'
         faults.append(document.fault(("timing", "total"), message, at_key=True))
     return faults
+
+
+def _as(adapter: TypeAdapter[Any], value: object) -> Any:
+    """A value as the model reads it; None where it is absent, or a fault by itself."""
+    try:
+        return None if value is None else adapter.validate_python(value)
+    except ValidationError:
+        return None
 
 
 def _kind(time: object) -> str:
