@@ -15,9 +15,10 @@ import pytest
 
 import geotween
 from geotween.export.build import plan_scene
-from geotween.export.keyframes import Shape, keyframes
+from geotween.export.keyframes import keyframes
 from geotween.export.page_grid import GRID
 from geotween.export.resources import resource
+from geotween.export.shapes import Shape
 
 GOLDEN = Path(__file__).parent / "golden"
 SCENES = sorted(resource("scenes").glob("*.yaml"))

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from geotween.export.keyframes import Group, Shape, Slot
 from geotween.export.page_grid import GridTrack
 from geotween.export.paint import Paint
 from geotween.export.paths import closed_path, path_texts, runs
+from geotween.export.shapes import Group, Shape, Slot
 
 PAINT = Paint("#000000", "none", 0)
 OFFSETS = np.array([0, 4])

@@ -16,7 +16,8 @@ from geotween.data.load import Scene
 from geotween.data.problems import Problem
 from geotween.export.keyframes import keyframes
 from geotween.export.page import page, render
-from geotween.export.svg import animated_svg, still_svg, words
+from geotween.export.svg import animated_svg, still_svg
+from geotween.export.words import words
 from geotween.motion.morph import Morph, plan, resolve
 
 FORMATS = ("html", "svg")

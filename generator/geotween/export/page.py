@@ -12,10 +12,11 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from geotween.export.keyframes import Keyframes, Shape
+from geotween.export.keyframes import Keyframes
 from geotween.export.page_grid import GRID, GridTrack
 from geotween.export.paint import Paint
 from geotween.export.resources import resource
+from geotween.export.shapes import Shape
 from geotween.export.svg import still_svg
 from geotween.scene.model import SceneFile
 
@@ -57,14 +58,15 @@ def render(template: str, **context: Any) -> str:
 
 def keyframes_json(frames: Keyframes) -> dict[str, Any]:
     """Keyframes as plain values; each track and paint once, vertices as differences."""
-    slots = frames.slots()
-    groups = list(dict.fromkeys(slot.group for slot in slots))
+    slots = {slot: place for place, slot in enumerate(frames.slots())}
+    found = dict.fromkeys(slot.group for slot in slots)
+    groups = {group: place for place, group in enumerate(found)}
     paints: dict[Paint, int] = {}
     tracks: dict[str, int] = {}
 
     def shape(value: Shape) -> dict[str, Any]:
         found: dict[str, Any] = {
-            "slot": slots.index(value.slot),
+            "slot": slots[value.slot],
             "tracks": [tracks.setdefault(_track(t), len(tracks)) for t in value.tracks],
             "paint": [paints.setdefault(p, len(paints)) for p in value.paints],
         }
@@ -97,7 +99,7 @@ def keyframes_json(frames: Keyframes) -> dict[str, Any]:
             {"fill": p.fill, "stroke": p.stroke, "width": p.width, "dash": p.dash} for p in paints
         ],
         "groups": [{"layer": g.layer, "opacity": g.opacity} for g in groups],
-        "slots": [{"group": groups.index(s.group), "kind": s.kind, "key": s.key} for s in slots],
+        "slots": [{"group": groups[s.group], "kind": s.kind, "key": s.key} for s in slots],
         "tracks": [json.loads(text) for text in tracks],
         "spans": spans,
     }

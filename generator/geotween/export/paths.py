@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from geotween.export.keyframes import Shape
 from geotween.export.page_grid import GRID, GridTrack
+from geotween.export.shapes import Shape
 from geotween.motion.rings import Offsets, next_vertex
 
 _PER_PIXEL = round(1 / GRID)
