@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from shapely.geometry import Polygon, box
 
 import geotween
@@ -52,6 +52,7 @@ def test_what_moves_less_than_the_grid_is_still() -> None:
 
 @given(polygon_sets)
 def test_rounding_moves_no_vertex_by_more_than_half_a_diagonal(polygons: list[Polygon]) -> None:
+    assume(polygons)
     given_set = polygon_set(Feature(p) for p in polygons)
     page = fit_page(frame(), [given_set])
     for polygon, track in zip(given_set.polygons, resting(given_set, page), strict=True):
