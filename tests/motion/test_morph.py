@@ -18,7 +18,7 @@ from tests.motion.shapes import blobs, polygon_sets, star, tiles
 
 
 def area(polygons: list[Polygon]) -> MultiPolygon:
-    # On a fine grid: without one GEOS's union can lose a polygon whose edge all but meets another's.
+    # On a fine grid: without one, union can lose a polygon whose edge all but meets another's.
     return shapely.union_all(polygons, grid_size=1e-12) if polygons else MultiPolygon()
 
 
