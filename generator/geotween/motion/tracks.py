@@ -38,6 +38,10 @@ class Track:
     def key(self) -> Key:
         return self.identity.key
 
+    @property
+    def class_(self) -> str | None:
+        return self.identity.class_
+
     def at(self, t: float) -> Vertices:
         """The vertices (n, 2) at t in [0, 1]; exact at key times."""
         after = int(np.clip(np.searchsorted(self.times, t), 1, len(self.times) - 1))
