@@ -74,6 +74,10 @@ def stop_svg(page: Page) -> None:
     page.evaluate("document.documentElement.pauseAnimations()")
 
 
+# How to stop a page or an SVG, and how to set its time.
+HANDS = {"html": (stop_page, seek_page), "svg": (stop_svg, seek_svg)}
+
+
 def drawn(page: Page) -> Drawn:
     """The rings of all region paths that are to be seen, in px, as the browser computes them."""
     found: Drawn = {}

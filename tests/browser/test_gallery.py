@@ -21,21 +21,16 @@ def test_there_are_scenes() -> None:
 
 
 @EACH_SCENE
-def test_the_page_draws_what_frame_says(path: Path, gallery: Path, browser: Browser) -> None:
+@pytest.mark.parametrize("suffix", drawn.HANDS)
+def test_what_is_drawn_is_what_frame_says(
+    path: Path, suffix: str, gallery: Path, browser: Browser
+) -> None:
     scene = geotween.load(path)
-    with drawn.open_page(browser, gallery / f"{path.stem}.html") as page:
-        drawn.stop_page(page)
-        drawn.assert_plays_as_planned(scene, page, drawn.seek_page)
-        drawn.assert_rests_are_exact(scene, page, drawn.seek_page)
-
-
-@EACH_SCENE
-def test_the_svg_draws_what_frame_says(path: Path, gallery: Path, browser: Browser) -> None:
-    scene = geotween.load(path)
-    with drawn.open_page(browser, gallery / f"{path.stem}.svg") as page:
-        drawn.stop_svg(page)
-        drawn.assert_plays_as_planned(scene, page, drawn.seek_svg)
-        drawn.assert_rests_are_exact(scene, page, drawn.seek_svg)
+    stop, seek = drawn.HANDS[suffix]
+    with drawn.open_page(browser, gallery / f"{path.stem}.{suffix}") as page:
+        stop(page)
+        drawn.assert_plays_as_planned(scene, page, seek)
+        drawn.assert_rests_are_exact(scene, page, seek)
 
 
 @EACH_SCENE

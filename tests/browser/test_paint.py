@@ -65,14 +65,11 @@ def test_page_and_svg_paint_alike(
 ) -> None:
     file = build(tmp_path, *change, second)
     seen: dict[str, list[list[list[object]]]] = {}
-    for suffix, stop, seek in (
-        (".html", drawn.stop_page, drawn.seek_page),
-        (".svg", drawn.stop_svg, drawn.seek_svg),
-    ):
-        with drawn.open_page(browser, file.with_suffix(suffix)) as page:
+    for suffix, (stop, seek) in drawn.HANDS.items():
+        with drawn.open_page(browser, file.with_suffix(f".{suffix}")) as page:
             stop(page)
             seen[suffix] = [painted(page, seek, t) for t in (0.5, 1.05, 1.7, 2.4, 2.97, 3.5, 4.7)]
-    for one, other in zip(seen[".html"], seen[".svg"], strict=True):
+    for one, other in zip(seen["html"], seen["svg"], strict=True):
         assert [row[0] for row in one] == [row[0] for row in other]
         for mine, theirs in zip(one, other, strict=True):
             assert [("none" in str(a)) for a in mine] == [("none" in str(b)) for b in theirs]

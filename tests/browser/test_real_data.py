@@ -24,12 +24,9 @@ def test_real_data_plays_as_planned(name: str, rest: str, tmp_path: Path, browse
     scene = geotween.load(write_scene(tmp_path, name, rest))
     report = geotween.build(scene, tmp_path / "public")
     assert all(t.measures["partition error"] <= 1e-9 for t in report.transitions)
-    page_file, svg_file = report.files
-    with drawn.open_page(browser, page_file) as page:
-        drawn.stop_page(page)
-        drawn.assert_plays_as_planned(scene, page, drawn.seek_page, per_transition=5)
-        drawn.assert_rests_are_exact(scene, page, drawn.seek_page)
-    with drawn.open_page(browser, svg_file) as page:
-        drawn.stop_svg(page)
-        drawn.assert_plays_as_planned(scene, page, drawn.seek_svg, per_transition=5)
-        drawn.assert_rests_are_exact(scene, page, drawn.seek_svg)
+    for file in report.files:
+        stop, seek = drawn.HANDS[file.suffix[1:]]
+        with drawn.open_page(browser, file) as page:
+            stop(page)
+            drawn.assert_plays_as_planned(scene, page, seek, per_transition=5)
+            drawn.assert_rests_are_exact(scene, page, seek)

@@ -35,7 +35,7 @@ steps:
   - polygons: [{{class: whole, polygon: [[0, 0], [30, 0], [30, 30], [0, 30]]}}]
 """
 COLOURS = 'class: {a: {fill: "#803020"}, b: {fill: "#208030"}, c: {fill: "#704090"}}'
-FORMATS = pytest.mark.parametrize("suffix", ["html", "svg"])
+FORMATS = pytest.mark.parametrize("suffix", drawn.HANDS)
 
 
 @pytest.fixture(params=["one colour", "three colours"])
@@ -69,11 +69,7 @@ def at(browser: Browser, folder: Path, text: str, suffix: str, time: float) -> N
     geotween.build(geotween.load(folder / "seams.yaml"), folder)
     size = {"width": 440, "height": 700}
     with drawn.open_page(browser, folder / f"seams.{suffix}", viewport=size) as page:
-        stop, seek = (
-            (drawn.stop_svg, drawn.seek_svg)
-            if suffix == "svg"
-            else (drawn.stop_page, drawn.seek_page)
-        )
+        stop, seek = drawn.HANDS[suffix]
         stop(page)
         seek(page, time)
         page.wait_for_timeout(50)
@@ -99,33 +95,21 @@ def test_an_open_seam_is_stroked(browser: Browser, tmp_path: Path, suffix: str) 
     assert yellow.sum() > 100
 
 
-@FORMATS
-def test_a_border_that_meets_two_others_half_way_shows_no_hairline(
-    browser: Browser, tmp_path: Path, suffix: str
-) -> None:
+# Tilings whose cells meet along one line.
+A = "{key: a, polygon: [[0, 0], [13, 0], [19, 30], [0, 30]]}"
+TILINGS = {
+    "a beside b": f"[{A}, {{key: b, polygon: [[13, 0], [30, 0], [30, 30], [19, 30]]}}]",
     # b and c each lie along half of a's edge, which has no vertex where they meet.
-    tiles = (
-        "[{key: a, polygon: [[0, 0], [13, 0], [19, 30], [0, 30]]}, "
-        "{key: b, polygon: [[13, 0], [30, 0], [30, 15], [16, 15]]}, "
-        "{key: c, polygon: [[16, 15], [30, 15], [30, 30], [19, 30]]}]"
-    )
-    text = (
-        "title: Seams\nmap: {width: 400}\nmotion: {correspondence: key}\n"
-        f'style: {{stroke: none, opacity: 1, fill: "#204060"}}\n'
-        f"steps: [{{polygons: {tiles}}}, {{polygons: {tiles}}}]\n"
-    )
-    for time in (0.5, 1.8):
-        assert_one_colour(at(browser, tmp_path, text, suffix, time))
+    "a beside b and c": f"[{A}, {{key: b, polygon: [[13, 0], [30, 0], [30, 15], [16, 15]]}}, "
+    "{key: c, polygon: [[16, 15], [30, 15], [30, 30], [19, 30]]}]",
+}
 
 
 @FORMATS
+@pytest.mark.parametrize("tiles", TILINGS.values(), ids=TILINGS)
 def test_abutting_regions_of_one_fill_and_different_keys_show_no_hairline(
-    browser: Browser, tmp_path: Path, suffix: str
+    browser: Browser, tmp_path: Path, suffix: str, tiles: str
 ) -> None:
-    tiles = (
-        "[{key: a, polygon: [[0, 0], [13, 0], [19, 30], [0, 30]]}, "
-        "{key: b, polygon: [[13, 0], [30, 0], [30, 30], [19, 30]]}]"
-    )
     text = (
         "title: Seams\nmap: {width: 400}\nmotion: {correspondence: key}\n"
         f'style: {{stroke: none, opacity: 1, fill: "#204060"}}\n'

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from shapely.geometry import MultiPolygon, Polygon, box
 
-from geotween.data.polygons import Feature, PolygonSet, extent, fit_into, polygon_set
+from geotween.data.polygons import Feature, PolygonSet, bounds_of, extent, fit_into, polygon_set
 from tests.data.shapes import polygons
 
 
@@ -36,13 +36,13 @@ def test_empty_set_has_no_polygons_and_no_bounds() -> None:
 
 
 def test_extent_is_the_larger_side_of_the_box_around_all_sets() -> None:
-    assert extent([a_set(box(0, 0, 2, 1)), a_set(), a_set(box(1, 0, 2, 7))]) == 7
-    assert extent([a_set(box(-3, 0, 2, 1)), a_set(box(5, 0, 9, 7))]) == 12
+    assert extent(bounds_of([a_set(box(0, 0, 2, 1)), a_set(), a_set(box(1, 0, 2, 7))])) == 7
+    assert extent(bounds_of([a_set(box(-3, 0, 2, 1)), a_set(box(5, 0, 9, 7))])) == 12
 
 
 def test_extent_of_nothing_is_nothing() -> None:
-    assert extent([]) == 0
-    assert extent([a_set(), a_set()]) == 0
+    assert extent(bounds_of([])) == 0
+    assert extent(bounds_of([a_set(), a_set()])) == 0
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from geotween.export.keyframes import Keyframes, keyframes
 from geotween.export.page import keyframes_json
 from geotween.export.paint import PALETTE
 from geotween.export.svg import animated_svg
+from geotween.export.words import words
 
 Write = Callable[..., Path]
 WHOLE = "{class: whole, polygon: [[0, 0], [8, 0], [8, 8], [0, 8]]}"
@@ -113,6 +114,6 @@ def test_the_page_is_told_the_same_vertices(write_scene: Write, span: int) -> No
 def test_what_does_not_change_is_one_path_of_the_svg_for_all_time(write_scene: Write) -> None:
     still = "[{key: a, polygon: [[0, 0], [8, 0], [8, 8]]}]"
     found = frames(write_scene, f"steps: [{{polygons: {still}}}, {{polygons: {still}}}]")
-    svg = animated_svg(found, "t", "")
+    svg = animated_svg(found, "t", "", words(found, "t", ""))
     assert svg.count('class="region"') == 1
     assert "animate" not in svg.split('class="words"')[0]

@@ -9,11 +9,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import shapely
 
 from geotween.data.checks import doubts
 from geotween.data.parse import Parser, is_wkt
-from geotween.data.polygons import FARTHEST, Feature, PolygonSet, fit_into, polygon_set
+from geotween.data.polygons import (
+    Feature,
+    PolygonSet,
+    bounds_of,
+    extent,
+    fit_into,
+    polygon_set,
+    too_far,
+)
 from geotween.data.problems import Problem
 from geotween.data.repair import repair
 from geotween.scene.document import Document, Location, read_json, read_text
@@ -22,7 +29,6 @@ from geotween.scene.model import Layer, SceneFile
 from geotween.scene.read import read_scene
 from geotween.scene.values import UNWRITABLE, Time
 
-REGIONS = "regions"  # the one layer that moves
 HIGHEST = 20  # times its width, a page whose height follows from the data
 
 
@@ -181,7 +187,7 @@ def _valid(source: _Source, label: str) -> tuple[PolygonSet, list[Problem]]:
     if source.skipped:
         message = "features without area (points, lines, null geometries) were left out"
         count = float(source.skipped)
-        hint = "" if source.features else "nothing is left: the step is empty"
+        hint = "" if source.features else "nothing is left of it"
         problems.append(
             Problem("no area", "warning", message, (label,), "", count, "features", hint)
         )
@@ -191,10 +197,9 @@ def _valid(source: _Source, label: str) -> tuple[PolygonSet, list[Problem]]:
 
 def _check_size(document: Document, sets: list[PolygonSet], free_height: bool) -> None:
     """Raise where double precision cannot tell the data's places apart, or they make no page."""
-    everything = np.concatenate([s.polygons for s in sets])
-    box = shapely.total_bounds(everything)
-    size, reach = (box[2:] - box[:2]).max(), np.abs(box).max()
-    if size * FARTHEST < reach:
+    box = bounds_of(sets)
+    if too_far(box):
+        size, reach = extent(box), np.abs(box).max()
         message = f"the data span {size:.3g} units at {reach:.3g} from the origin: too fine to draw"
         hint = "shift the coordinates nearer to 0"
         raise SceneError([document.fault(("steps",), message, hint, at_key=True)])

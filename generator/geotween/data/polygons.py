@@ -21,6 +21,8 @@ RELATIVE_TOLERANCE = 1e-9
 # places apart as finely as a page shows them.
 FARTHEST = 1e10
 
+REGIONS = "regions"  # the one layer that moves
+
 
 @dataclass(frozen=True)
 class Identity:
@@ -82,20 +84,22 @@ def polygon_set(features: Iterable[Feature]) -> PolygonSet:
     return PolygonSet(oriented, tuple(identities[owner] for owner in owners))
 
 
-def extent(sets: Sequence[PolygonSet]) -> float:
-    """The larger side of the box around some sets, in the data's units; 0 where all are empty."""
+def bounds_of(sets: Sequence[PolygonSet]) -> NDArray[np.float64]:
+    """The bounds (4,) of some sets together; all 0 where all are empty."""
     boxes = np.array([s.bounds for s in sets if len(s)])
     if not len(boxes):
-        return 0.0
-    return float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max())
+        return np.zeros(4)
+    return np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
 
 
-def centre(sets: Sequence[PolygonSet]) -> NDArray[np.float64]:
-    """The middle (2,) of the box around some sets; the origin where all are empty."""
-    boxes = np.array([s.bounds for s in sets if len(s)])
-    if not len(boxes):
-        return np.zeros(2)
-    return np.asarray((boxes[:, :2].min(axis=0) + boxes[:, 2:].max(axis=0)) / 2)
+def extent(bounds: NDArray[np.float64]) -> float:
+    """The larger side of some bounds, in the data's units."""
+    return float((bounds[2:] - bounds[:2]).max())
+
+
+def too_far(bounds: NDArray[np.float64]) -> bool:
+    """Whether data in some bounds lie too far from the origin for their size."""
+    return bool(extent(bounds) * FARTHEST < np.abs(bounds).max())
 
 
 def moved(polygons: PolygonSet, way: NDArray[np.float64]) -> PolygonSet:

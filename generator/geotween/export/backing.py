@@ -12,7 +12,7 @@ from geotween.export.page_grid import GridTrack
 from geotween.export.paint import Paint
 from geotween.export.shapes import SEAM_FADE, Group, Shape, Slot
 from geotween.motion.rings import next_vertex
-from geotween.motion.tracks import SEAM_AT_ORIGIN, SEAM_AT_TARGET
+from geotween.motion.tracks import SEAM_AT
 
 # Steps of the grid by which two edges on one line may part when their ends are rounded.
 ROUNDING = 1.5
@@ -40,8 +40,8 @@ def backings(bundles: list[Bundle]) -> list[Shape]:
     the fills part on the way, it is there only while they are still, or already, the same.
     """
     contacts: dict[tuple[Group, Paint, Paint, tuple[float, float] | None], set[int]] = {}
-    for end, flag in ((0, SEAM_AT_ORIGIN), (1, SEAM_AT_TARGET)):
-        for i, j in _contacts(bundles, end, flag):
+    for end in (0, 1):
+        for i, j in _contacts(bundles, end):
             one, other = bundles[i], bundles[j]
             fills = [(b.paints[0].fill, b.paints[1].fill) for b in (one, other)]
             if one.group != other.group or fills[0][end] != fills[1][end]:
@@ -64,7 +64,7 @@ def backings(bundles: list[Bundle]) -> list[Shape]:
     return shapes
 
 
-def _contacts(bundles: list[Bundle], end: int, flag: int) -> list[tuple[int, int]]:
+def _contacts(bundles: list[Bundle], end: int) -> list[tuple[int, int]]:
     """Pairs of bundles that run along each other at one end of the span, with no stroke there.
 
     Edges meet where they lie on one line, but for the rounding, and overlap by more than that.
@@ -78,7 +78,7 @@ def _contacts(bundles: list[Bundle], end: int, flag: int) -> list[tuple[int, int
             following = points[next_vertex(track.offsets)]
             bare = (points != following).any(axis=1)
             if bundle.paints[end].stroked:
-                bare &= (track.seams & flag) > 0
+                bare &= (track.seams & SEAM_AT[end]) > 0
             starts.append(points[bare])
             stops.append(following[bare])
             owners.append(np.full(int(bare.sum()), number))

@@ -125,9 +125,9 @@ def render_scene(
     origins = [f"Source: {model.source}" if model.source else "", model.credit]
     source = " · ".join(filter(None, origins))
     description = model.description or model.subtitle
-    if "svg" in wanted:
-        files[svg_name] = animated_svg(frames, model.title, description, source).encode()
     around = words(frames, model.title, source) if "svg" in wanted else None
+    if around:
+        files[svg_name] = animated_svg(frames, model.title, description, around).encode()
     card = Card(
         model.title,
         description,
@@ -153,6 +153,7 @@ def gallery(cards: Sequence[Card], title: str, lang: str = "en") -> bytes:
 
 
 def report(rendered: Rendered, files: Sequence[Path]) -> BuildReport:
+    """The report of a scene whose files have been written."""
     sizes = tuple(len(content) for content in rendered.files.values())
     return BuildReport(rendered.name, tuple(files), sizes, rendered.transitions, rendered.problems)
 

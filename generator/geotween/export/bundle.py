@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geotween.data.load import REGIONS
-from geotween.data.polygons import Identity
+from geotween.data.polygons import REGIONS, Identity
 from geotween.export.backing import Bundle, backings
 from geotween.export.page_grid import GridTrack
 from geotween.export.paint import Paint, Painter
@@ -21,6 +20,8 @@ from geotween.export.shapes import Group, Kind, Shape, Slot
 
 @dataclass(frozen=True, eq=False)
 class Member:
+    """A track of a span, the identity it bears, and those that it is painted by at both ends."""
+
     identity: Identity
     ends: tuple[Identity, Identity]
     track: GridTrack

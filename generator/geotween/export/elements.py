@@ -27,6 +27,7 @@ class SvgPath(svgwrite.path.Path):  # type: ignore[misc]  # svgwrite is untyped
 
 
 def path_element(slot: Slot, paint: Paint, text: str) -> BaseElement:
+    """The path of a slot; regions say which layer and key they are."""
     path = SvgPath(slot.kind, text, slot.key if slot.kind == "region" else None)
     if slot.kind == "region":
         path.attribs["data-layer"] = slot.group.layer
@@ -35,6 +36,7 @@ def path_element(slot: Slot, paint: Paint, text: str) -> BaseElement:
 
 
 def paint_attributes(paint: Paint) -> dict[str, str]:
+    """A paint as attributes; those of a stroke only where there is one."""
     attributes = {"fill": paint.fill}
     if paint.stroked:
         attributes |= {"stroke": paint.stroke, "stroke-width": px(paint.width)}
@@ -45,4 +47,5 @@ def paint_attributes(paint: Paint) -> dict[str, str]:
 
 
 def px(value: float) -> str:
+    """A number as short as it can be said, to a millionth."""
     return f"{value:.6f}".rstrip("0").rstrip(".")

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from geotween.data.load import REGIONS, Scene
+from geotween.data.load import Scene
+from geotween.data.polygons import REGIONS
 from geotween.data.problems import Problem, Severity
 from geotween.export.bundle import Member, shapes_of
 from geotween.export.easing import EASINGS, Spline

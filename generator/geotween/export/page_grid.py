@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geotween.data.polygons import PolygonSet
+from geotween.data.polygons import PolygonSet, bounds_of
 from geotween.motion.rings import next_vertex, rings_of
 from geotween.motion.tracks import Track
 from geotween.scene.model import Map
@@ -50,8 +50,8 @@ class GridTrack:
 
 def fit_page(frame: Map, sets: Sequence[PolygonSet]) -> Page:
     """The page that holds all sets; the height follows from the data unless it is given."""
-    boxes = np.array([s.bounds for s in sets if len(s)])
-    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    box = bounds_of(sets)
+    low, high = box[:2], box[2:]
     size = high - low
     room = frame.width - 2 * frame.padding
     scale = room / size[0]

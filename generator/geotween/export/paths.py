@@ -23,11 +23,12 @@ def path_texts(shape: Shape) -> list[tuple[float, str]]:
     """
     times = sorted({t for track in shape.tracks for t in track.times} | {0.0})
     lines = [(track, list(_lines(shape, track))) for track in shape.tracks]
-    return [
-        (t, "".join(_text(_at(track, t)[line], closed) for track, of_track in lines
-                    for line, closed in of_track))
-        for t in times
-    ]  # fmt: skip
+    return [(t, "".join(_track_text(_at(track, t), of_track) for track, of_track in lines))
+            for t in times]  # fmt: skip
+
+
+def _track_text(points: NDArray[np.int64], lines: list[tuple[NDArray[np.intp], bool]]) -> str:
+    return "".join(_text(points[line], closed) for line, closed in lines)
 
 
 def _at(track: GridTrack, t: float) -> NDArray[np.int64]:

@@ -3,7 +3,7 @@
 Animated values follow one scheme. A path that moves has an ``animate`` of its ``d`` that begins
 with its transition and lasts as long as the whole map; the transition takes the first part of it,
 and what follows is not seen. Visibility is animated from 0. So a loop needs no event, and no
-value is written twice.
+animation writes a value twice.
 """
 
 from __future__ import annotations
@@ -32,10 +32,11 @@ class PathMaker:
         self.shown: dict[BaseElement, list[tuple[int, int]]] = {}
 
     def add(self, span: Span, shape: Shape) -> None:
-        texts = path_texts(shape)
+        """Draw a shape of this slot in a span, unless it is seen at no time."""
         times = _visible(span, shape, self.frames)
         if times is None:
             return
+        texts = path_texts(shape)
         one, other = shape.paints
         same = shape.still and one == other and not self.slot.code
         if same and (texts[0][1], one) in self.still:
@@ -93,6 +94,7 @@ class PathMaker:
 
 
 def animated(frames: Keyframes, slots: list[Slot]) -> Iterable[tuple[Slot, list[BaseElement]]]:
+    """The paths of each slot over the whole timeline."""
     makers = {slot: PathMaker(frames, slot) for slot in slots}
     for span, shapes in frames.spans:
         for shape in shapes:
@@ -136,9 +138,9 @@ def show(element: BaseElement, times: list[tuple[int, int]], frames: Keyframes) 
 def fade(frames: Keyframes, group: Group) -> BaseElement | None:
     """The opacity of a group over the whole timeline, if it changes."""
     start, end = (px(value) for value in group.opacity)
-    spans = [span for span, shapes in frames.spans if any(s.slot.group == group for s in shapes)]
     if start == end:
         return None
+    spans = [span for span, shapes in frames.spans if any(s.slot.group == group for s in shapes)]
     times, values, splines = [0.0], [start], list[Spline | None]()
     for span in spans:
         times += [span.start / frames.duration, span.end / frames.duration]

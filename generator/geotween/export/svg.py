@@ -13,7 +13,7 @@ from geotween.export.keyframes import Keyframes
 from geotween.export.paths import closed_path, path_texts
 from geotween.export.shapes import Group, Slot
 from geotween.export.smil import animated, fade
-from geotween.export.words import Words, words, write_words
+from geotween.export.words import Words, write_words
 
 
 def still_svg(frames: Keyframes, title: str, step: int = 0, around: Words | None = None) -> str:
@@ -24,17 +24,17 @@ def still_svg(frames: Keyframes, title: str, step: int = 0, around: Words | None
     drawing.attribs["aria-label"] = title
     stage = drawing.g(class_="stage")
     shapes = next(s for span, s in frames.spans if span.rest and span.step == step)
-    slots = [slot for slot in frames.slots() if any(s.slot == slot for s in shapes)]
-    groups = _groups(drawing, stage, slots)
-    for shape in sorted(shapes, key=lambda shape: slots.index(shape.slot)):
-        groups[shape.slot].add(path_element(shape.slot, shape.paints[0], path_texts(shape)[0][1]))
+    resting = {shape.slot: shape for shape in shapes}
+    groups = _groups(drawing, stage, [slot for slot in frames.slots() if slot in resting])
+    for slot, group in groups.items():
+        shape = resting[slot]
+        group.add(path_element(slot, shape.paints[0], path_texts(shape)[0][1]))
     drawing.add(stage)
     return str(drawing.tostring())
 
 
-def animated_svg(frames: Keyframes, title: str, description: str, source: str = "") -> str:
+def animated_svg(frames: Keyframes, title: str, description: str, around: Words) -> str:
     """The whole map, playing by SMIL alone."""
-    around = words(frames, title, source)
     drawing = _drawing(frames, around)
     drawing.set_desc(title=title, desc=description or None)
     drawing.attribs["data-steps"] = json.dumps(

@@ -40,13 +40,15 @@ def certify(division: Division, problems: tuple[Problem, ...]) -> Certificate:
         (division.origin.polygons, division.origin_pieces, division.indices[:, 0]),
         (division.target.polygons, division.target_pieces, division.indices[:, 1]),
     )
-    error = max(_partition_error(*side) for side in sides)
+    differences = [_differences(*side) for side in sides]
+    error = max(float(found.max(initial=0)) for found in differences)
     measures = {
         "partition error": error,
         "pieces": float(len(division.indices)),
         "mends": float(len(division.problems)),
     }
-    if any(_inexact(*side) for side in sides):
+    allowed = [_rounding(whole) for whole, _, _ in sides]
+    if any((d > a).any() for d, a in zip(differences, allowed, strict=True)):
         message = "pieces miss or exceed their polygon"
         hint = "look for slivers in the data"
         found = Problem("partition", "error", message, (), "", error, "of its area", hint)
@@ -54,18 +56,12 @@ def certify(division: Division, problems: tuple[Problem, ...]) -> Certificate:
     return Certificate(False, problems, measures)
 
 
-def _partition_error(whole: Objects, pieces: Objects, owner: NDArray[np.intp]) -> float:
-    """The worst relative difference between a polygon's area and that of its pieces."""
-    return float(_differences(whole, pieces, owner).max(initial=0))
-
-
-def _inexact(whole: Objects, pieces: Objects, owner: NDArray[np.intp]) -> bool:
-    """Whether a polygon and its pieces differ by more than the rounding of coordinates explains."""
+def _rounding(whole: Objects) -> NDArray[np.float64]:
+    """For each polygon the relative difference that the rounding of coordinates explains."""
     if not len(whole):
-        return False
+        return np.empty(0)
     ulp = np.spacing(np.abs(shapely.total_bounds(whole)).max())
-    allowed = PARTITION_TOLERANCE + 4 * ulp * shapely.length(whole) / shapely.area(whole)
-    return bool((_differences(whole, pieces, owner) > allowed).any())
+    return np.asarray(PARTITION_TOLERANCE + 4 * ulp * shapely.length(whole) / shapely.area(whole))
 
 
 def _differences(whole: Objects, pieces: Objects, owner: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -12,17 +12,18 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Point, Polygon
 
 from geotween.data.polygons import (
-    FARTHEST,
+    REGIONS,
     RELATIVE_TOLERANCE,
     Feature,
     Identity,
     Key,
     PolygonSet,
-    centre,
+    bounds_of,
     extent,
     fit_into,
     moved,
     polygon_set,
+    too_far,
 )
 from geotween.data.problems import Problem
 from geotween.data.repair import repair
@@ -147,8 +148,7 @@ def morph(
         raise ValueError(f"fit is shared or each, not {fit!r}")
     origin_set, origin_problems = _read(origin, "origin")
     target_set, target_problems = _read(target, "target")
-    size = extent([origin_set, target_set])
-    if size and np.abs(centre([origin_set, target_set])).max() > FARTHEST * size:
+    if too_far(bounds_of([origin_set, target_set])):
         raise ValueError("the polygons lie too far from the origin for their size; shift them")
     if fit == "each" and len(origin_set):
         target_set = fit_into(target_set, origin_set.bounds)
@@ -181,23 +181,26 @@ def resolve(
 
 
 def plan(
-    origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str = "regions"
+    origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str = REGIONS
 ) -> Morph:
     """Correspond, divide, match and interpolate two sets.
 
     Sets far from the origin are planned near it, where coordinates have digits to spare.
     """
-    size, middle = extent([origin, target]), centre([origin, target])
-    if size and np.abs(middle).max() > NEAR * size:
-        near = _plan(moved(origin, -middle), moved(target, -middle), techniques, layer)
+    box = bounds_of([origin, target])
+    size, middle = extent(box), (box[:2] + box[2:]) / 2
+    if np.abs(middle).max() > NEAR * size:
+        near = _plan(moved(origin, -middle), moved(target, -middle), techniques, layer, size)
         return _moved_back(near, origin, target, middle)
-    return _plan(origin, target, techniques, layer)
+    return _plan(origin, target, techniques, layer, size)
 
 
-def _plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str) -> Morph:
+def _plan(
+    origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str, size: float
+) -> Morph:
     related = correspond(origin, target, techniques.correspondence)
     divided = divide(related, techniques.division)
-    tolerance = RELATIVE_TOLERANCE * extent([origin, target])
+    tolerance = RELATIVE_TOLERANCE * size
     tracks, problems = interpolate(match(divided, techniques.matching), layer, tolerance)
     return Morph(tracks, divided, (*divided.problems, *problems))
 

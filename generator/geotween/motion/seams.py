@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geotween.motion.rings import MatchedPiece, Rings, Vertices, next_vertex, undirected
+from geotween.motion.tracks import SEAM_AT
 
 # A vertex given to one side at the origin may land on a seam at the target, whose other side then
 # needs it, and so on. Such chains nearly always end soon, where a piece's own border begins; a few,
@@ -67,7 +68,7 @@ class _Seams:
     @classmethod
     def at(cls, pieces: Sequence[MatchedPiece], owner: NDArray[np.intp], end: int) -> _Seams | None:
         """The seams at one end, or None where there are none."""
-        found = [(i, p, np.flatnonzero(p.seams & (1 << end))) for i, p in enumerate(pieces)]
+        found = [(i, p, np.flatnonzero(p.seams & SEAM_AT[end])) for i, p in enumerate(pieces)]
         found = [(i, p, edges) for i, p, edges in found if len(edges)]
         if not found:
             return None

@@ -13,6 +13,7 @@ from geotween.data.polygons import Identity, Key
 from geotween.motion.rings import Offsets, Vertices, to_polygons
 
 SEAM_AT_ORIGIN, SEAM_AT_TARGET = 1, 2
+SEAM_AT = (SEAM_AT_ORIGIN, SEAM_AT_TARGET)  # by the end of the transition, 0 or 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import re
 from dataclasses import dataclass
@@ -162,8 +163,6 @@ def _hint(problem: str) -> str:
 
 
 def _similar_file(path: Path) -> str:
-    import difflib
-
     try:
         names = [entry.name for entry in path.parent.iterdir() if entry.is_file()]
     except (FileNotFoundError, NotADirectoryError):

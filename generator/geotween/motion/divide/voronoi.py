@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiPoint, Point, Polygon
 
 from geotween.data.polygons import RELATIVE_TOLERANCE
+from geotween.motion.rings import next_vertex, rings_of, undirected
 
 Points = NDArray[np.float64]
 
@@ -234,12 +235,10 @@ def _common_seams(
     faces: NDArray[np.object_],
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
     """Pairs of faces with a common edge, both ways round, with that edge's length."""
-    rings, of_face = shapely.get_rings(faces, return_index=True)
-    points, of_ring = shapely.get_coordinates(rings, return_index=True)
-    same = of_ring[1:] == of_ring[:-1]
-    start, end, face = points[:-1][same], points[1:][same], of_face[of_ring[1:][same]]
-    swap = (start[:, 0] > end[:, 0]) | ((start[:, 0] == end[:, 0]) & (start[:, 1] > end[:, 1]))
-    ends = np.where(swap[:, None], np.hstack([end, start]), np.hstack([start, end]))
+    rings = rings_of(faces)
+    start, end = rings.vertices, rings.vertices[next_vertex(rings.offsets)]
+    face = np.repeat(rings.polygon_of, np.diff(rings.offsets))
+    ends = undirected(start, end)
     order = np.lexsort(ends.T)
     twin = np.flatnonzero((ends[order][1:] == ends[order][:-1]).all(axis=1))
     one, other = order[twin], order[twin + 1]
