@@ -38,7 +38,7 @@ golden: .venv/.tests
 	$(PYTHON) -m venv .venv
 
 .venv/.package: .venv/bin/python pyproject.toml
-	$(BIN)/pip install --quiet --disable-pip-version-check -e .
+	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[geo,hotspots]'
 	@touch $@
 
 .venv/.tests: .venv/bin/python pyproject.toml
