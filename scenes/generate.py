@@ -1,13 +1,16 @@
-"""Write fire.yaml and hotspots.yaml beside this script.
+"""Write fire.yaml, and incidents.csv for hotspots.yaml, beside this script.
 
-Both scenes are illustrative. The fire is grown by shortest paths over a seeded map of how readily each cell burns,
-with a west wind and a few spot fires; the hotspots are contours of the density of seeded random incidents. The seeds
-are fixed, so the files come out the same, byte for byte, every time.
+Both are illustrative. The fire is grown by shortest paths over a seeded map of how readily each cell burns, with a
+west wind and a few spot fires; the incidents are seeded random points around a few places in an invented city. The
+seeds are fixed, so the files come out the same, byte for byte, every time.
 """
 
 from __future__ import annotations
 
 import textwrap
+from dataclasses import dataclass
+from datetime import date, timedelta
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -46,11 +49,11 @@ def areas(
     return sorted(found, key=lambda p: -p.area)
 
 
-def flow(polygon: Polygon, decimals: int) -> str:
+def flow(polygon: Polygon) -> str:
     """A polygon as a YAML flow sequence: a ring, or rings when it has holes."""
     rings = []
     for ring in (polygon.exterior, *polygon.interiors):
-        points = [f"[{x:.{decimals}f},~{y:.{decimals}f}]" for x, y in ring.coords[:-1]]
+        points = [f"[{x:.2f},~{y:.2f}]" for x, y in ring.coords[:-1]]
         rings.append("[" + ", ".join(points) + "]")
     return rings[0] if len(rings) == 1 else "[" + ", ".join(rings) + "]"
 
@@ -67,16 +70,8 @@ def wrapped(head: str, body: str, indent: int) -> str:
     return lines.replace("~", " ")
 
 
-def write(
-    name: str, head: str, steps: list[tuple[str, str, str, list[Polygon]]], decimals: int
-) -> None:
-    """Write a scene: its head, then its steps of label, time, caption and polygons."""
-    out = [head.strip("\n"), "steps:"]
-    for label, time, caption, polygons in steps:
-        out += [f'  - label: "{label}"', f"    time: {time}", f"    caption: {caption}"]
-        out.append("    polygons:" if polygons else "    polygons: []")
-        out += [wrapped("      - ", flow(p, decimals), 8) for p in polygons]
-    (HERE / f"{name}.yaml").write_text("\n".join(out) + "\n", encoding="utf-8", newline="\n")
+def write(name: str, lines: list[str]) -> None:
+    (HERE / name).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
 # --- the wildfire ---------------------------------------------------------------------------------------------------
@@ -191,144 +186,117 @@ def fire() -> None:
         "The second spot fire is swallowed and the island burns out. A third fire starts near the town.",
         "The fire lies along the lake, with two more islands inside it. The third fire still burns apart.",
     ]
-    steps: list[tuple[str, str, str, list[Polygon]]] = []
+    out = [FIRE_HEAD.strip("\n"), "steps:"]
+    before: list[Polygon] = []
     for n, caption in enumerate(captions, 1):
         field = np.clip(n - gaussian_filter(np.minimum(day, 9), 1.0), -2, 2)
         polygons = areas(field, FIRE_CELL, 0.12, 0.06, 0.035)
         # An island of unburnt forest is mapped only once the front has passed it for a day.
-        mapped = [Polygon(p.exterior) for _, _, _, before in steps[-1:] for p in before]
+        mapped = [Polygon(p.exterior) for p in before]
         polygons = [
             Polygon(
                 p.exterior, [h for h in p.interiors if any(m.contains(Polygon(h)) for m in mapped)]
             )
             for p in polygons
         ]
-        steps.append((f"Day {n}", str(n), caption, polygons))
-    write("fire", FIRE_HEAD, steps, 2)
+        out += [
+            f'  - label: "Day {n}"',
+            f"    time: {n}",
+            f"    caption: {caption}",
+            "    polygons:",
+        ]
+        out += [wrapped("      - ", flow(p), 8) for p in polygons]
+        before = polygons
+    write("fire.yaml", out)
 
 
-# --- the hotspots ---------------------------------------------------------------------------------------------------
+# --- the incidents --------------------------------------------------------------------------------------------------
 
-HOTSPOTS_HEAD = """
-# yaml-language-server: $schema=scene.schema.json
-# Written by generate.py. Local plane in kilometres.
-title: Hotspots of crime, January to June
-subtitle: "Illustrative: seeded random incidents in an invented city."
-description: >-
-  Patches of dense incidents drift over a city for six months. Two of them merge, a ring forms around a stadium,
-  breaks in two and vanishes, one patch fades away and two others appear.
-source: Illustrative. Seeded script generate.py; areas with more than 42 incidents per square kilometre and month.
-credit: City, river and incidents are invented.
-lang: en
-map:
-  width: 900
-  padding: 16
-  background: "#f2f0ec"
-  y: up
-  layers:
-    - name: city
-      fill: "#e3dfd6"
-      stroke: "#c8c1b2"
-      width: 1
-      polygons:
-        - [[0.7, 1.2], [2.2, 0.5], [4.4, 0.3], [6.6, 0.4], [8.6, 0.9], [9.6, 2.2], [9.7, 4.1], [9.2, 5.7], [8, 6.6],
-          [5.9, 6.8], [3.8, 6.4], [2, 6.2], [0.8, 5.2], [0.4, 3.2]]
-    - name: river
-      fill: "#bdd3dd"
-      stroke: none
-      polygons:
-        - [[0, 2.9], [1.5, 2.95], [3, 2.6], [4.6, 2.35], [6.2, 2.75], [7.6, 3.15], [9, 3.1], [10, 3.3], [10, 3.5],
-          [9, 3.3], [7.5, 3.35], [6.1, 2.95], [4.6, 2.55], [3, 2.8], [1.5, 3.15], [0, 3.1]]
-style:
-  fill: "#7b2d6b"
-  stroke: "#53184a"
-  width: 1
-  opacity: 0.8
-motion: {correspondence: intersects, easing: ease-in-out}
-timing: {transition: 2.2, hold: 1.2, loop: true}
-"""
+MONTHS = [date(2024, month, 1) for month in range(1, 8)]  # the last one is where June ends
+CITY = (0.5, 0.5), (9.5, 6.5)  # south-west and north-east, in kilometres
+SCATTERED = 40  # incidents a month, anywhere in it
 
-CITY_SHAPE, CITY_CELL = (70, 100), 0.1
-MONTHS = ["January", "February", "March", "April", "May", "June"]
-# x, y and spread in kilometres, ring radius, then incidents a month
-CLUSTERS = [
-    (
-        [2.3, 2.6, 2.9, 3.2, 3.3, 3.3],
-        [4.6, 4.5, 4.4, 4.3, 4.3, 4.4],
-        0.45,
-        0.0,
-        [150, 170, 180, 170, 120, 30],
+
+@dataclass(frozen=True)
+class Cluster:
+    """Where incidents gather: for each month its middle and their number, and how they lie around it."""
+
+    x: list[float]
+    y: list[float]
+    count: list[int]
+    spread: float
+    radius: float = 0.0  # of a ring
+    gap: tuple[float, ...] = (0.0,) * 6  # radians that it is open in the north and in the south
+
+
+CLUSTERS = {
+    "west": Cluster(
+        x=[2.3, 2.6, 2.9, 3.2, 3.3, 3.3],
+        y=[4.6, 4.5, 4.4, 4.3, 4.3, 4.4],
+        count=[105, 115, 125, 120, 80, 15],
+        spread=0.42,
     ),
-    (
-        [4.6, 4.4, 4.1, 4.0, 4.3, 4.7],
-        [3.4, 3.6, 3.9, 4.0, 3.6, 3.2],
-        0.42,
-        0.0,
-        [110, 130, 160, 170, 150, 120],
+    "centre": Cluster(
+        x=[4.6, 4.4, 4.1, 4.0, 4.3, 4.7],
+        y=[3.6, 3.6, 3.9, 4.0, 3.6, 3.2],
+        count=[75, 90, 110, 120, 105, 80],
+        spread=0.4,
     ),
-    (
-        [7.3, 7.3, 7.3, 7.3, 7.3, 7.3],
-        [4.9, 4.9, 4.9, 4.9, 4.9, 4.9],
-        0.2,
-        0.95,
-        [0, 110, 330, 360, 230, 60],
+    "stadium": Cluster(
+        x=[7.3] * 6,
+        y=[4.9] * 6,
+        count=[0, 24, 196, 220, 124, 20],
+        spread=0.17,
+        radius=1.0,
+        gap=(0.0, 0.0, 0.0, 0.0, 1.2, 1.2),
     ),
-    (
-        [6.9, 6.7, 6.5, 6.4, 6.4, 6.4],
-        [1.6, 1.6, 1.7, 1.7, 1.7, 1.7],
-        0.4,
-        0.0,
-        [140, 110, 60, 0, 0, 0],
+    "south": Cluster(
+        x=[6.9, 6.7, 6.5, 6.4, 6.4, 6.4],
+        y=[1.6, 1.6, 1.7, 1.7, 1.7, 1.7],
+        count=[95, 65, 15, 0, 0, 0],
+        spread=0.38,
     ),
-    (
-        [8.3, 8.3, 8.3, 8.3, 8.1, 7.9],
-        [2.2, 2.2, 2.2, 2.2, 2.3, 2.4],
-        0.4,
-        0.0,
-        [0, 0, 0, 90, 130, 160],
+    "south-east": Cluster(
+        x=[8.3, 8.3, 8.3, 8.3, 8.1, 7.9],
+        y=[2.2, 2.2, 2.2, 2.2, 2.3, 2.4],
+        count=[0, 0, 0, 60, 90, 115],
+        spread=0.38,
     ),
-    (
-        [1.6, 1.6, 1.6, 1.6, 1.6, 1.7],
-        [1.9, 1.9, 1.9, 1.9, 1.9, 1.9],
-        0.36,
-        0.0,
-        [0, 0, 70, 110, 120, 130],
+    "south-west": Cluster(
+        x=[1.8] * 6,
+        y=[1.9] * 6,
+        count=[0, 0, 50, 70, 80, 90],
+        spread=0.35,
     ),
-]
+}
 
 
-def density(month: int) -> Grid:
-    """Incidents per square kilometre in one month, smoothed."""
-    rng = np.random.default_rng(1829 + month)
-    rows, columns = CITY_SHAPE
-    points = [rng.uniform((0, 0), (columns * CITY_CELL, rows * CITY_CELL), (160, 2))]
-    for xs, ys, spread, ring, counts in CLUSTERS:
-        count = counts[month]
-        angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
-        centre = np.c_[xs[month] + ring * np.cos(angle), ys[month] + ring * np.sin(angle)]
-        points.append(centre + rng.normal(scale=spread, size=(count, 2)))
-    x, y = np.concatenate(points).T
-    extent = ((0, rows * CITY_CELL), (0, columns * CITY_CELL))
-    counted, _, _ = np.histogram2d(y, x, bins=CITY_SHAPE, range=extent)
-    return gaussian_filter(counted, 3.2) / CITY_CELL**2
+def around(cluster: Cluster, month: int, rng: np.random.Generator) -> Grid:
+    """A month's incidents (n, 2) of a cluster: spread around its middle, or evenly along its ring."""
+    count, reach = cluster.count[month], (np.pi - cluster.gap[month]) / 2
+    # A ring's go to its eastern and its western half in turn.
+    angle = np.linspace(-reach, reach, count) + np.pi * (np.arange(count) % 2)
+    middle = np.array([cluster.x[month], cluster.y[month]])
+    ring = cluster.radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    return middle + ring + rng.normal(scale=cluster.spread, size=(count, 2))
 
 
-def hotspots() -> None:
-    captions = [
-        "Three separate hotspots, two north of the river and one south of it.",
-        "The two in the north have drifted together and merged.",
-        "A ring forms around the stadium in the north-east. The southern hotspot is gone, one shows in the south-west.",
-        "The ring stays quiet in the middle. Another hotspot appears in the south-east.",
-        "The ring breaks into two halves.",
-        "Both halves have vanished, and the merged hotspot has shrunk and moved on. Three are left.",
-    ]
-    steps = []
-    for n, caption in enumerate(captions):
-        polygons = areas(density(n) - 42, CITY_CELL, 0.08, 0.15, 0.12)
-        steps.append((MONTHS[n], str(n + 1), caption, polygons))
-    write("hotspots", HOTSPOTS_HEAD, steps, 2)
+def incidents() -> None:
+    rng = np.random.default_rng(1839)
+    rows = []
+    for month, (first, end) in enumerate(pairwise(MONTHS)):
+        points = np.concatenate(
+            [rng.uniform(*CITY, (SCATTERED, 2))]
+            + [around(cluster, month, rng) for cluster in CLUSTERS.values()]
+        )
+        days = np.sort(rng.integers((end - first).days, size=len(points)))
+        rows += [
+            f"{first + timedelta(days=int(day))},{x:.2f},{y:.2f}"
+            for day, (x, y) in zip(days, rng.permutation(points), strict=True)
+        ]
+    write("incidents.csv", ["date,x,y", *rows])
 
 
 if __name__ == "__main__":
     fire()
-    hotspots()
+    incidents()

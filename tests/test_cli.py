@@ -148,7 +148,7 @@ def test_build_tells_of_warnings_and_counts_notes(write_scene: WriteScene, tmp_p
     assert result.exit_code == 0
     assert result.stderr.startswith(WARNING)
     result = run("build", write_scene(SPIKE), "-o", tmp_path / "out")
-    assert (result.exit_code, result.stderr) == (0, "1 small mend: see geotween check\n")
+    assert (result.exit_code, result.stderr) == (0, "1 note: see geotween check\n")
 
 
 def test_strict_build_of_a_repaired_polygon_exits_with_1_and_writes_nothing(

@@ -25,6 +25,10 @@ _SCENES = click.argument(
     "scenes", nargs=-1, required=True, metavar="SCENE...", type=click.Path(path_type=Path)
 )
 _QUIET = click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+_SANDBOX = click.option(
+    "--sandbox", metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Let scenes read files in this folder only.",
+)  # fmt: skip
 
 
 @click.group(
@@ -55,8 +59,16 @@ def main() -> None:
     help="What to write: html, svg, or both.",
 )  # fmt: skip
 @click.option("--strict", is_flag=True, help="Exit with 1 where there are warnings; write nothing.")
+@_SANDBOX
 @_QUIET
-def build(scenes: tuple[Path, ...], out: str, formats: str, strict: bool, quiet: bool) -> None:
+def build(
+    scenes: tuple[Path, ...],
+    out: str,
+    formats: str,
+    strict: bool,
+    sandbox: Path | None,
+    quiet: bool,
+) -> None:
     """Build scenes into standalone pages and SVGs, with an index of those named.
 
     \b
@@ -76,7 +88,7 @@ def build(scenes: tuple[Path, ...], out: str, formats: str, strict: bool, quiet:
         folder = export.writable(out)
     except OSError as error:
         _fail(f"cannot write to {out}: {error.filename}: {error.strerror}")
-    loaded = _load(scenes)
+    loaded = _load(scenes, sandbox)
     names = [scene.name for scene in loaded]
     for name in names:
         if names.count(name) > 1 or name == Path(export.INDEX).stem:
@@ -105,8 +117,9 @@ def build(scenes: tuple[Path, ...], out: str, formats: str, strict: bool, quiet:
 
 @main.command()
 @_SCENES
+@_SANDBOX
 @_QUIET
-def check(scenes: tuple[Path, ...], quiet: bool) -> None:
+def check(scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool) -> None:
     """Validate scenes and plan their motion; print problems and measures.
 
     \b
@@ -116,10 +129,12 @@ def check(scenes: tuple[Path, ...], quiet: bool) -> None:
     from geotween.export.build import plan_scene, transition_reports
 
     worst = False
-    for scene in _load(scenes):
+    for scene in _load(scenes, sandbox):
         morphs, problems = plan_scene(scene)
         if not quiet:
             click.echo(f"{scene.path}: {len(scene.steps)} steps, {len(morphs)} transitions")
+            if scene.projection:
+                click.echo(f"  projection: {scene.projection}")
             for transition in transition_reports(scene, morphs):
                 measures = ", ".join(f"{k} {v:.3g}" for k, v in transition.measures.items())
                 click.echo(f"  {' → '.join(transition.steps)}: {measures}")
@@ -142,7 +157,7 @@ def schema() -> None:
     click.echo(json.dumps(scene_schema(), indent=2, ensure_ascii=False))
 
 
-def _load(paths: Sequence[Path]) -> list[Scene]:
+def _load(paths: Sequence[Path], sandbox: Path | None) -> list[Scene]:
     """All scenes, or every fault of all of them on stderr and the end."""
     from geotween.data.load import load
     from geotween.scene.errors import SceneError
@@ -151,7 +166,7 @@ def _load(paths: Sequence[Path]) -> list[Scene]:
     faults: list[Fault] = []
     for path in paths:
         try:
-            loaded.append(load(path))
+            loaded.append(load(path, sandbox))
         except SceneError as error:
             faults += error.faults
     if faults:
@@ -168,7 +183,7 @@ def _report_problems(problems: Iterable[Problem], *, quiet: bool, notes: bool = 
             click.echo(f"  {problem}" if notes else str(problem), err=not notes)
         count = len(listed) - len(serious)
         if count and not notes:
-            click.echo(f"{_count(count, 'small mend')}: see geotween check", err=True)
+            click.echo(f"{_count(count, 'note')}: see geotween check", err=True)
     return bool(serious)
 
 
@@ -179,6 +194,8 @@ def _print_built(result: Rendered, folder: Path) -> None:
         f"{folder / name} ({len(content) / 1000:.0f} kB)" for name, content in result.files.items()
     )
     click.echo(f"{result.name}: {_count(count, 'transition')}, {_count(pieces, 'piece')} → {sizes}")
+    if result.projection:
+        click.echo(f"  projection: {result.projection}")
 
 
 def _count(number: int, noun: str) -> str:

@@ -30,7 +30,7 @@ VERTEX_TOLERANCE = 0.08
 
 VISIBLE_REGIONS = """() => [...document.querySelectorAll('path.region')]
   .filter(path => getComputedStyle(path).visibility === 'visible')
-  .map(path => [path.dataset.key, getComputedStyle(path).d])"""
+  .map(path => [path.dataset.layer, path.dataset.key, getComputedStyle(path).d])"""
 
 
 class Watched:
@@ -78,11 +78,15 @@ def stop_svg(page: Page) -> None:
 HANDS = {"html": (stop_page, seek_page), "svg": (stop_svg, seek_svg)}
 
 
-def drawn(page: Page) -> Drawn:
-    """The rings of all region paths that are to be seen, in px, as the browser computes them."""
+def drawn(page: Page, only: str | None = None) -> Drawn:
+    """The rings of all region paths, or those of a layer, that are to be seen, in px.
+
+    They are as the browser computes them.
+    """
     found: Drawn = {}
-    for key, text in page.evaluate(VISIBLE_REGIONS):
-        found.setdefault(key or "", []).extend(rings_of_path(text))
+    for layer, key, text in page.evaluate(VISIBLE_REGIONS):
+        if only in (None, layer):
+            found.setdefault(key or "", []).extend(rings_of_path(text))
     return found
 
 
@@ -95,11 +99,12 @@ def rings_of_path(text: str) -> list[Points]:
     return [ring for ring in rings if len(ring) > 2]
 
 
-def expected(scene: Scene, frame: Frame, keyed: bool) -> Drawn:
-    """The rings of a frame, in px."""
+def expected(scene: Scene, frames: list[Frame], keyed: bool) -> Drawn:
+    """The rings of the frames of all layers, in px."""
     page = _page(scene)
     found: Drawn = {}
-    for polygon, key in zip(frame.polygons, frame.keys, strict=True):
+    drawn = [pair for f in frames for pair in zip(f.polygons, f.keys, strict=True)]
+    for polygon, key in drawn:
         rings = found.setdefault(str(key) if keyed else "", [])
         for ring in (polygon.exterior, *polygon.interiors):
             rings.append(_without_repeats(page.pixels(shapely.get_coordinates(ring)[:-1])))
@@ -142,18 +147,21 @@ def rests(scene: Scene) -> list[tuple[int, float]]:
     return [(s.step, (s.start + s.end) / 2000) for s in timeline(scene) if s.rest]
 
 
-def morphs(scene: Scene) -> list[geotween.Morph]:
-    """Each transition through the public function, as somebody else would plan it."""
+def morphs(scene: Scene) -> list[list[geotween.Morph]]:
+    """Each transition, layer by layer, through the public function."""
     motion = scene.model.motion
     return [
-        geotween.morph(
-            shapes(a.regions),
-            shapes(b.regions),
-            motion.method,
-            correspondence=motion.correspondence,
-            division=motion.division,
-            matching=motion.matching,
-        )
+        [
+            geotween.morph(
+                shapes(a.regions.in_layer(layer)),
+                shapes(b.regions.in_layer(layer)),
+                motion.method,
+                correspondence=motion.correspondence,
+                division=motion.division,
+                matching=motion.matching,
+            )
+            for layer in scene.layer_order
+        ]
         for a, b in zip(scene.steps[:-1], scene.steps[1:], strict=True)
     ]
 
@@ -183,7 +191,8 @@ def assert_plays_as_planned(
     planned, keyed = morphs(scene), is_keyed(scene)
     for index, time, t in moments(scene, per_transition):
         seek(page, time)
-        assert_same(drawn(page), expected(scene, planned[index].frame(t), keyed), tolerance)
+        frames = [morph.frame(t) for morph in planned[index]]
+        assert_same(drawn(page), expected(scene, frames, keyed), tolerance)
 
 
 def assert_rests_are_exact(scene: Scene, page: Page, seek: Callable[[Page, float], None]) -> None:
@@ -191,17 +200,23 @@ def assert_rests_are_exact(scene: Scene, page: Page, seek: Callable[[Page, float
     to_page = _page(scene)
     for index, time in rests(scene):
         seek(page, time)
-        rings = [ring for of_key in drawn(page).values() for ring in of_key]
-        given = [shapely.transform(p, to_page.pixels) for p in scene.steps[index].regions.polygons]
-        if not given:
-            assert not rings
-            continue
-        vertices = np.concatenate([shapely.get_coordinates(p) for p in given])
-        assert _farthest(np.concatenate(rings), vertices) <= VERTEX_TOLERANCE
-        assert _farthest(vertices, np.concatenate(rings)) <= VERTEX_TOLERANCE
-        wanted = shapely.union_all(given)
-        length = sum(p.length for p in given)
-        assert _area_of(rings).symmetric_difference(wanted).area <= 0.05 * length
+        for layer in scene.layer_order:
+            rings = [ring for of_key in drawn(page, layer).values() for ring in of_key]
+            regions = scene.steps[index].regions.in_layer(layer)
+            given = [shapely.transform(p, to_page.pixels) for p in regions.polygons]
+            _assert_same_area(rings, given)
+
+
+def _assert_same_area(rings: list[Points], given: list[Polygon]) -> None:
+    if not given:
+        assert not rings
+        return
+    vertices = np.concatenate([shapely.get_coordinates(p) for p in given])
+    assert _farthest(np.concatenate(rings), vertices) <= VERTEX_TOLERANCE
+    assert _farthest(vertices, np.concatenate(rings)) <= VERTEX_TOLERANCE
+    wanted = shapely.union_all(given)
+    length = sum(p.length for p in given)
+    assert _area_of(rings).symmetric_difference(wanted).area <= 0.05 * length
 
 
 def _page(scene: Scene) -> Any:

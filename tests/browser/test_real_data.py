@@ -9,19 +9,13 @@ from playwright.sync_api import Browser
 
 import geotween
 from tests.browser import drawn
-from tests.real_data import needs_real_data, write_scene
-
-SETS = {
-    "us_fig9_split/albers-px": "map: {fit: each, y: down}",
-    "us_regions": "map: {width: 960}",
-    "wildfire_creek2020": "timing: {transition: 1, hold: 0.5}",
-}
+from tests.real_data import SCENES, needs_real_data, write_scene
 
 
 @needs_real_data
-@pytest.mark.parametrize(("name", "rest"), SETS.items(), ids=SETS)
-def test_real_data_plays_as_planned(name: str, rest: str, tmp_path: Path, browser: Browser) -> None:
-    scene = geotween.load(write_scene(tmp_path, name, rest))
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "scale_us_counties"])
+def test_real_data_plays_as_planned(name: str, tmp_path: Path, browser: Browser) -> None:
+    scene = geotween.load(write_scene(tmp_path, name))
     report = geotween.build(scene, tmp_path / "public")
     assert all(t.measures["partition error"] <= 1e-9 for t in report.transitions)
     for file in report.files:
@@ -30,3 +24,12 @@ def test_real_data_plays_as_planned(name: str, rest: str, tmp_path: Path, browse
             stop(page)
             drawn.assert_plays_as_planned(scene, page, seek, per_transition=5)
             drawn.assert_rests_are_exact(scene, page, seek)
+
+
+@needs_real_data
+def test_thousands_of_counties_rest_where_they_lie(tmp_path: Path, browser: Browser) -> None:
+    scene = geotween.load(write_scene(tmp_path, "scale_us_counties"))
+    (file,) = geotween.build(scene, tmp_path / "public", ["html"]).files
+    with drawn.open_page(browser, file) as page:
+        drawn.stop_page(page)
+        drawn.assert_rests_are_exact(scene, page, drawn.seek_page)

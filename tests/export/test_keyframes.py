@@ -41,8 +41,8 @@ def test_classes_take_the_palette_in_order_of_appearance(write_scene: Write) -> 
 
 def test_key_before_class_before_all(write_scene: Write) -> None:
     style = 'style: {fill: "#111111", class: {b: {fill: "#222222"}}, key: {z: {fill: "#333333"}}}'
-    ring = "polygon: [[0, 0], [1, 0], [1, 1]]"
-    listed = f"[{{key: x, {ring}}}, {{key: y, class: b, {ring}}}, {{key: z, class: b, {ring}}}]"
+    a, b, c = (f"polygon: [[{x}, 0], [{x + 1}, 0], [{x + 1}, 1]]" for x in (0, 2, 4))
+    listed = f"[{{key: x, {a}}}, {{key: y, class: b, {b}}}, {{key: z, class: b, {c}}}]"
     found = frames(write_scene, f"{style}\nsteps: [{{polygons: {listed}}}, {{polygons: []}}]")
     assert [fill for _, fill in kinds(found, 0)] == ["#111111", "#222222", "#333333"]
 

@@ -7,33 +7,37 @@ from itertools import pairwise
 
 from geotween.data.polygons import PolygonSet
 from geotween.data.problems import Problem
+from geotween.data.series import Member
 from geotween.scene.model import SceneFile
 
 SHOWN = 8  # names listed in a hint
 
 
-def doubts(model: SceneFile, sets: Sequence[PolygonSet], labels: Sequence[str]) -> list[Problem]:
+def doubts(
+    model: SceneFile, sets: Sequence[PolygonSet], members: Sequence[Member]
+) -> list[Problem]:
     """Style rules and keys that no feature answers to, empty files, times that run backwards."""
     identities = [i for polygons in sets for i in polygons.identities]
     classes = dict.fromkeys(i.class_ for i in identities if i.class_ is not None)
     keys = dict.fromkeys(str(i.key) for i in identities if i.keyed)
     problems = []
     for word, rules, known in (
-        ("class", model.style.by_class, classes),
-        ("key", model.style.by_key, keys),
+        ("style for the class", model.style.by_class, classes),
+        ("class_order: the class", model.map.class_order, classes),
+        ("style for the key", model.style.by_key, keys),
     ):
         for name in rules:
             if name not in known:
                 there = ", ".join([*known][:SHOWN]) + (", …" if len(known) > SHOWN else "")
-                hint = f"there are {there}" if known else f"no feature has a {word}"
-                message = f'style for the {word} "{name}", which no feature has'
+                hint = f"there are {there}" if known else f"no feature has a {word.split()[-1]}"
+                message = f'{word} "{name}", which no feature has'
                 problems.append(Problem("unused style", "warning", message, hint=hint))
     if model.motion.correspondence == "key" and not keys:
         hint = "give features the same key in each step"
         message = "correspondence by key, but no feature has a key"
         problems.append(Problem("no keys", "warning", message, hint=hint))
-    for (one, before), (other, after) in pairwise(zip(model.steps, labels, strict=True)):
+    for one, other in pairwise(members):
         if one.time is not None and other.time is not None and other.time < one.time:  # type: ignore[operator]  # one kind in all steps
             message = "time runs backwards between these steps"
-            problems.append(Problem("time order", "note", message, (before, after)))
+            problems.append(Problem("time order", "note", message, (one.label, other.label)))
     return problems

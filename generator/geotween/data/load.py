@@ -1,35 +1,37 @@
-"""A scene from its file: every step's polygons read, made valid and put into one frame."""
+"""A scene from its file: every step's polygons read, put in place and made ready to move."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from geotween.data.checks import doubts
-from geotween.data.parse import Parser, is_wkt
+from geotween.data.frame import check_size, pixels_per_unit
+from geotween.data.identity import TwoClassesError, merge_keys
+from geotween.data.place import crs_of_all, place
 from geotween.data.polygons import (
     Feature,
     PolygonSet,
-    bounds_of,
-    extent,
-    fit_into,
+    bounds,
+    fitted,
+    geometries_of,
     polygon_set,
-    too_far,
+    with_geometries,
 )
-from geotween.data.problems import Problem
-from geotween.data.repair import repair
-from geotween.scene.document import Document, Location, read_json, read_text
-from geotween.scene.errors import Fault, SceneError
+from geotween.data.problems import Problem, condensed, in_kilometres
+from geotween.data.series import Member
+from geotween.data.sources import Held, SourceReader
+from geotween.data.steps import members_of, place_of
+from geotween.data.tidy import tidy
+from geotween.data.valid import mended, valid_features
+from geotween.scene.document import Document, read_text
+from geotween.scene.errors import SceneError
 from geotween.scene.model import Layer, SceneFile
-from geotween.scene.read import read_scene
+from geotween.scene.read import check_transitions, read_scene
 from geotween.scene.values import UNWRITABLE, Time
-
-HIGHEST = 20  # times its width, a page whose height follows from the data
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +49,10 @@ class Step:
 class Scene:
     """A scene ready to be planned: its model, its steps and what was mended in them.
 
-    ``layers`` are the static shapes underneath, each with its polygons. All coordinates are the
-    data's own; with ``fit: each`` every step is already centred in the frame of the first one
-    that has polygons.
+    ``layers`` are the static shapes underneath, each with its polygons; ``layer_order`` names the
+    layers of the regions, the lowest first. All coordinates are in the plane that ``projection``
+    tells in words; with ``fit: each`` every step is already centred in the frame of the first one
+    that has polygons. ``projection`` is empty where coordinates are drawn as they are.
     """
 
     name: str
@@ -57,14 +60,18 @@ class Scene:
     model: SceneFile
     steps: tuple[Step, ...]
     layers: tuple[tuple[Layer, PolygonSet], ...]
+    layer_order: tuple[str, ...]
+    projection: str
     problems: tuple[Problem, ...]
 
     def __iter__(self) -> Iterator[Step]:
         return iter(self.steps)
 
 
-def load(path: str | os.PathLike[str]) -> Scene:
+def load(path: str | os.PathLike[str], sandbox: str | os.PathLike[str] | None = None) -> Scene:
     """Read a scene file and all that it names.
+
+    With a ``sandbox`` the scene may name files in that folder only.
 
     Raises
     ------
@@ -79,131 +86,120 @@ def load(path: str | os.PathLike[str]) -> Scene:
         hint = "rename it: pages are called as their scene"
         raise SceneError([document.fault((), f"the file name {shown} cannot be written", hint)])
     model, values, faults = read_scene(document)
-    reader = _SourceReader(document)
-    steps = reader.all_sources(values, "steps")
-    layers = reader.all_sources(values.get("map"), "layers", prefix=("map",))
+    reader = SourceReader(document, None if sandbox is None else Path(sandbox))
+    if model is None:
+        reader.members(values, "steps")
+    members = members_of(reader, model, values) if model else []
+    layers = reader.members(values.get("map"), "layers", ("map",))
     faults += reader.faults
     if model is None or faults:
         raise SceneError(sorted(set(faults)))
+    _check_steps(document, model, values, members)
+    static = [layers.get(i, Held([])) for i in range(len(model.map.layers))]
+    return _scene(document, model, members, static)
 
-    labels = [_label(step.label, step.time, i) for i, step in enumerate(model.steps)]
+
+def _check_steps(
+    document: Document, model: SceneFile, values: dict[str, Any], members: Sequence[Member]
+) -> None:
+    """Raise where data or points make too few steps, or times that the timing cannot use."""
+    at = place_of(model)
+    if at == ("steps",):
+        return
+    if len(members) < 2:
+        message = f"a map that moves needs at least two steps, and this makes {len(members)}"
+        raise SceneError([document.fault(at, message, at_key=True)])
+    times = [member.time for member in members]
+    faults = check_transitions(document, values.get("timing", {}), times, lambda _: at)
+    if faults:
+        raise SceneError(faults)
+
+
+def _scene(
+    document: Document, model: SceneFile, members: Sequence[Member], static: Sequence[Held]
+) -> Scene:
+    """The scene of what was read: valid, in place, tidy.
+
+    Raises
+    ------
+    SceneError
+        Where it has no polygon, or they cannot be put in place.
+    """
+    at, labels = place_of(model), [member.label for member in members]
+    sources = [held for member in members for held in member.held] + list(static)
+    owners = [i for i, member in enumerate(members) for _ in member.held]
+    owners += range(len(members), len(members) + len(static))
+    named = labels + [f"layer {layer.name or i + 1}" for i, layer in enumerate(model.map.layers)]
+    systems = crs_of_all(document, model.map, sources)
     problems: list[Problem] = []
-    sets = []
-    for index, label in enumerate(labels):
-        regions, found = _valid(steps[index], label)
+    features = []
+    for source, owner, system in zip(sources, owners, systems, strict=True):
+        geographic = system is not None and system.is_geographic
+        valid, found = valid_features(source, step=named[owner], geographic=geographic)
+        features.append(valid)
         problems += found
-        sets.append(regions)
-    if not any(map(len, sets)):
+    count = len(sources) - len(static)
+    placed = place(document, model.map, sources, systems, features, owners)
+    problems += placed.problems
+    features = []
+    for shapes, owner in zip(placed.features, owners, strict=True):
+        kept, found = mended(shapes, step=named[owner]) if placed.projected else (shapes, [])
+        features.append(kept)
+        problems += found
+    steps, found = _merged(document, members, features[:count])
+    problems += found
+    if not any(steps):
         hint = "what has no area is left out" if problems else ""
-        raise SceneError([document.fault(("steps",), "no step has a polygon", hint, at_key=True)])
+        raise SceneError([document.fault(at, "no step has a polygon", hint, at_key=True)])
     if model.map.fit == "each":
-        frame = next(s.bounds for s in sets if len(s))
-        sets = [fit_into(s, frame) for s in sets]
-    static = []
-    for index, layer in enumerate(model.map.layers):
-        shapes, found = _valid(layers[index], f"layer {layer.name or index + 1}")
-        problems += found
-        static.append((layer, shapes))
-    problems += doubts(model, sets, labels)
-    _check_size(document, [*sets, *(shapes for _, shapes in static)], model.map.height is None)
+        steps = _in_one_frame(steps)
+    box = bounds([f for part in [*steps, *features[count:]] for f in part])
+    check_size(document, at, model.map, box)
+    tidied = tidy(steps, features[count:], labels, model.map, pixels_per_unit(model.map, box))
+    sets = [polygon_set(step) for step in tidied.steps]
     return Scene(
-        file.stem,
-        file,
+        document.path.stem,
+        document.path,
         model,
         tuple(
-            Step(label, s.time, s.caption, model.timing.hold if s.hold is None else s.hold, regions)
-            for label, s, regions in zip(labels, model.steps, sets, strict=True)
+            Step(member.label, member.time, member.caption, member.hold, regions)
+            for member, regions in zip(members, sets, strict=True)
         ),
-        tuple(static),
-        tuple(problems),
+        tuple(zip(model.map.layers, map(polygon_set, tidied.static), strict=True)),
+        tidied.layers,
+        placed.words,
+        tuple(
+            in_kilometres(problem, placed.metres)
+            for problem in condensed([*problems, *tidied.problems, *doubts(model, sets, members)])
+        ),
     )
 
 
-@dataclass(frozen=True)
-class _Source:
-    """What a ``polygons`` value holds; how many geometries without area were left out of it."""
-
-    features: list[Feature]
-    skipped: int = 0
-    geojson: bool = False
-
-
-class _SourceReader:
-    """Reads the ``polygons`` of steps and layers, inline or from the files they name."""
-
-    def __init__(self, document: Document) -> None:
-        self.document = document
-        self.faults: list[Fault] = []
-
-    def all_sources(self, holder: Any, name: str, prefix: Location = ()) -> dict[int, _Source]:
-        """The source of each member of a list (steps, layers) that has polygons."""
-        members = holder.get(name) if isinstance(holder, dict) else None
-        found: dict[int, _Source] = {}
-        for index, member in enumerate(members if isinstance(members, list) else []):
-            if isinstance(member, dict) and "polygons" in member:
-                place = (*prefix, name, index, "polygons")
-                found[index] = self._source(member["polygons"], place)
-        return found
-
-    def _source(self, value: Any, at: Location) -> _Source:
-        if isinstance(value, str) and not is_wkt(value):
-            return self._file(value, at)
-        parser = Parser(lambda where, *words: self._report(self.document, (*at, *where), *words))
-        features = parser.features(value)
-        return _Source(features, parser.skipped, geojson=isinstance(value, dict))
-
-    def _file(self, name: str, at: Location) -> _Source:
-        named_by = self.document.fault(at, "")
-        path = self.document.path.parent / name
+def _merged(
+    document: Document, members: Sequence[Member], features: Sequence[list[Feature]]
+) -> tuple[list[list[Feature]], list[Problem]]:
+    """The features of each step, those of one key as one."""
+    parts = iter(features)
+    steps: list[list[Feature]] = []
+    problems: list[Problem] = []
+    faults = []
+    for member in members:
+        together = [feature for _ in member.held for feature in next(parts)]
         try:
-            source = Document(str(path), path, read_text(path, name, named_by=named_by))
-            value = read_json(source)
-        except SceneError as error:
-            self.faults += error.faults
-            return _Source([])
-        parser = Parser(lambda where, *words: self._report(source, where, *words))
-        try:
-            features = parser.geojson(value)
-        except RecursionError:
-            self._report(source, (), "nested too deeply", "")
-            return _Source([])
-        return _Source(features, parser.skipped, geojson=True)
-
-    def _report(self, document: Document, at: Location, message: str, hint: str) -> None:
-        self.faults.append(document.fault(at, message, hint))
+            kept, found = merge_keys(together, step=member.label)
+        except TwoClassesError as error:
+            hint = "leave the key out, or name a column that tells them apart"
+            message = f"{member.label}: {error}"
+            faults.append(document.fault(member.held[0].at, message, hint))
+            continue
+        steps.append(kept)
+        problems += found
+    if faults:
+        raise SceneError(faults)
+    return steps, problems
 
 
-def _label(label: str | None, time: Time | None, index: int) -> str:
-    if label is not None:
-        return label
-    if time is None:
-        return str(index + 1)
-    return f"{time:.15g}" if isinstance(time, float) else time.isoformat()
-
-
-def _valid(source: _Source, label: str) -> tuple[PolygonSet, list[Problem]]:
-    """A source's polygons made valid, and what was mended or left out."""
-    problems = []
-    if source.skipped:
-        message = "features without area (points, lines, null geometries) were left out"
-        count = float(source.skipped)
-        hint = "" if source.features else "nothing is left of it"
-        problems.append(
-            Problem("no area", "warning", message, (label,), "", count, "features", hint)
-        )
-    kept, found = repair(source.features, step=label, winding=source.geojson)
-    return polygon_set(kept), problems + found
-
-
-def _check_size(document: Document, sets: list[PolygonSet], free_height: bool) -> None:
-    """Raise where double precision cannot tell the data's places apart, or they make no page."""
-    box = bounds_of(sets)
-    if too_far(box):
-        size, reach = extent(box), np.abs(box).max()
-        message = f"the data span {size:.3g} units at {reach:.3g} from the origin: too fine to draw"
-        hint = "shift the coordinates nearer to 0"
-        raise SceneError([document.fault(("steps",), message, hint, at_key=True)])
-    if free_height and box[3] - box[1] > HIGHEST * (box[2] - box[0]):
-        message = f"the data are more than {HIGHEST} times as high as wide"
-        hint = "name the page's size: map: {width: 300, height: 900}"
-        raise SceneError([document.fault(("steps",), message, hint, at_key=True)])
+def _in_one_frame(steps: Sequence[Sequence[Feature]]) -> list[list[Feature]]:
+    """Steps scaled and centred into the bounds of the first one that has polygons."""
+    frame = next(bounds(step) for step in steps if step)
+    return [with_geometries(step, fitted(geometries_of(step), frame)) for step in steps]

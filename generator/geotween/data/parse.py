@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any
 
@@ -12,23 +12,22 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
+from geotween.data.columns import NAMED_SO, NOTHING, Columns, identity
 from geotween.data.polygons import Feature
 from geotween.scene.document import Location
 from geotween.scene.errors import did_you_mean
-from geotween.scene.values import UNWRITABLE
 
 # No map has larger coordinates: the Earth's girth is 4e10 mm.
 LARGEST_COORDINATE = 1e12
 
-_SRID = re.compile(r"\s*SRID=\d+;", re.IGNORECASE)
+SRID = re.compile(r"\s*SRID=(\d+);", re.IGNORECASE)
 # polygons.geojson begins like WKT, and is a path.
 _WKT = re.compile(
     r"\s*((MULTI)?(POLYGON|POINT|LINESTRING)|GEOMETRYCOLLECTION)(ZM?|M)?(\s|\(|$)", re.IGNORECASE
 )
 _WITH_AREA = ("Polygon", "MultiPolygon", "GeometryCollection")
 _WITHOUT_AREA = ("Point", "MultiPoint", "LineString", "MultiLineString")
-_IDENTITY = ("key", "class", "name")
-_FEATURE_KEYS = (*_IDENTITY, "polygon")
+_FEATURE_KEYS = ("key", "class", "name", "polygon")
 _NUMERIC = {str, int, float}  # YAML's numbers are texts here; true is no coordinate
 
 Report = Callable[[Location, str, str], None]
@@ -41,11 +40,13 @@ class Invalid(Exception):  # noqa: N818 - control flow inside this file, never s
 class Parser:
     """Reads polygons out of plain values; what is wrong goes to ``report``.
 
-    ``skipped`` counts geometries that have no area, such as points and lines.
+    ``columns`` are the properties of GeoJSON that tell key, class and name. ``skipped`` counts
+    geometries that have no area, such as points and lines.
     """
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: Report, columns: Columns = NAMED_SO) -> None:
         self.report = report
+        self.columns = columns
         self.skipped = 0
 
     def features(self, value: Any, at: Location = ()) -> list[Feature]:
@@ -85,9 +86,14 @@ class Parser:
             if geometry is None:
                 self.skipped += 1
                 return []
+            if "id" in value:
+                properties = {"id": value["id"], **properties}
             return self._feature(
                 lambda: self._geometry(geometry, (*at, "geometry")),
-                *(self._property(properties, n, (*at, "properties")) for n in _IDENTITY),
+                properties,
+                self.columns,
+                (*at, "properties"),
+                at[-1] if at else None,
             )
         if kind in _WITH_AREA + _WITHOUT_AREA:
             return self._feature(lambda: self._geometry(value, at))
@@ -110,35 +116,28 @@ class Parser:
         if "polygon" not in item:
             self.report(at, 'a feature needs a "polygon"', "{key: a, polygon: [[0, 0], ...]}")
             return []
-        names = (self._property(item, name, at) for name in _IDENTITY)
-        return self._feature(lambda: self._any(item["polygon"], (*at, "polygon")), *names)
+        said = {name: item[name] for name in _FEATURE_KEYS[:-1] if name in item}
+        polygon = item["polygon"]
+        return self._feature(lambda: self._any(polygon, (*at, "polygon")), said, NAMED_SO, at)
 
     def _feature(
         self,
         geometry: Callable[[], MultiPolygon | Polygon],
-        key: str | None = None,
-        class_: str | None = None,
-        name: str | None = None,
+        attributes: Mapping[str, Any] = NOTHING,
+        columns: Columns = NAMED_SO,
+        at: Location = (),
+        position: object = None,
     ) -> list[Feature]:
+        def report(column: str, message: str) -> None:
+            self.report((*at, column), message, "")
+
+        names = identity(attributes, columns, report) if attributes else (None, None, "")
         try:
             shape = geometry()
         except Invalid:
             return []
-        return [] if shape.is_empty else [Feature(shape, key, class_, name or "")]
-
-    def _property(self, values: dict[str, Any], name: str, at: Location) -> str | None:
-        value = values.get(name)
-        if value is None:
-            return None
-        place = (*at, name)
-        if isinstance(value, dict | list):
-            self.report(place, f'"{name}": expected a text', "")
-            return None
-        text = ("true" if value else "false") if isinstance(value, bool) else str(value)
-        if UNWRITABLE.search(text):
-            self.report(place, f'"{name}" holds a character that cannot be shown', "remove it")
-            return None
-        return text
+        place = position if isinstance(position, int) else None
+        return [] if shape.is_empty else [Feature(shape, *names, place, attributes=attributes)]
 
     def _any(self, value: Any, at: Location) -> Polygon | MultiPolygon:
         if isinstance(value, str):
@@ -221,7 +220,8 @@ class Parser:
                 f"the coordinates {x:g}, {y:g} are beyond any map",
                 f"expected finite numbers of at most {LARGEST_COORDINATE:g}",
             )
-        distinct = len(np.unique(points, axis=0))
+        second = points[(points != points[0]).any(axis=1)]
+        distinct = 1 + len(second[:1]) + bool((second != second[:1]).any())
         if distinct < 3:
             message = f"a ring needs at least three distinct points, not {distinct}"
             raise self._invalid(at, message, "add points: [[x, y], [x, y], [x, y]]")
@@ -237,7 +237,7 @@ class Parser:
     def _wkt(self, text: str, at: Location) -> Polygon | MultiPolygon:
         try:
             with np.errstate(over="ignore"):  # what overflows is met as infinite below
-                geometry = shapely.from_wkt(_SRID.sub("", text, count=1))
+                geometry = shapely.from_wkt(SRID.sub("", text, count=1))
         except (shapely.errors.GEOSException, NotImplementedError) as error:
             reason = str(error).partition(": ")[2] or str(error)
             message = f"this is not WKT: {reason.strip()}"
@@ -268,7 +268,7 @@ class Parser:
 
 def is_wkt(text: str) -> bool:
     """Whether a text under ``polygons`` is WKT rather than a path."""
-    without_srid = _SRID.sub("", text, count=1)
+    without_srid = SRID.sub("", text, count=1)
     return without_srid != text or _WKT.match(text) is not None
 
 

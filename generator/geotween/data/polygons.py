@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 Key = str | int
+Shapes = NDArray[np.object_]  # (Multi)Polygons
 
 # Two places nearer than this share of the data's extent are the same place. Double precision
 # leaves some 1e-16 of the coordinates; a map shows 1e-4 of its width.
@@ -21,21 +22,23 @@ RELATIVE_TOLERANCE = 1e-9
 # places apart as finely as a page shows them.
 FARTHEST = 1e10
 
-REGIONS = "regions"  # the one layer that moves
+REGIONS = "regions"  # the layer of what moves, unless its classes have layers of their own
 
 
 @dataclass(frozen=True)
 class Identity:
-    """Who a polygon is: its feature's key and class.
+    """Who a polygon is: its feature's key and class, and the layer that it moves in.
 
     A feature without a key of its own has its position in the set as key, and is not ``keyed``:
-    that position says nothing about other steps.
+    that position says nothing about other steps. ``attributes`` are the source's further columns.
     """
 
     key: Key
     class_: str | None = None
     keyed: bool = False
     name: str = ""
+    layer: str = REGIONS
+    attributes: Mapping[str, object] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,8 @@ class Feature:
     class_: str | None = None
     name: str = ""
     position: int | None = None
+    layer: str = REGIONS
+    attributes: Mapping[str, object] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +73,18 @@ class PolygonSet:
         """Smallest x, smallest y, largest x, largest y; NaN for an empty set."""
         return shapely.total_bounds(self.polygons) if len(self) else np.full(4, np.nan)
 
+    @property
+    def layers(self) -> list[str]:
+        """The layers of its polygons, each once."""
+        return list(dict.fromkeys(i.layer for i in self.identities))
+
+    def in_layer(self, layer: str) -> PolygonSet:
+        """The polygons of one layer."""
+        chosen = np.array([i.layer == layer for i in self.identities], dtype=bool)
+        return PolygonSet(
+            self.polygons[chosen], tuple(i for i in self.identities if i.layer == layer)
+        )
+
 
 def polygon_set(features: Iterable[Feature]) -> PolygonSet:
     """Features as a polygon set, MultiPolygons taken apart; geometries must be valid."""
@@ -77,7 +94,9 @@ def polygon_set(features: Iterable[Feature]) -> PolygonSet:
         position = index if feature.position is None else feature.position
         keyed = feature.key is not None
         key = position if feature.key is None else feature.key
-        identities.append(Identity(key, feature.class_, keyed, feature.name))
+        identities.append(
+            Identity(key, feature.class_, keyed, feature.name, feature.layer, feature.attributes)
+        )
     geometries = np.array([f.geometry for f in listed], dtype=object)
     parts, owners = shapely.get_parts(geometries, return_index=True)
     oriented = shapely.orient_polygons(parts, exterior_cw=False)
@@ -90,6 +109,25 @@ def bounds_of(sets: Sequence[PolygonSet]) -> NDArray[np.float64]:
     if not len(boxes):
         return np.zeros(4)
     return np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
+
+
+def geometries_of(features: Sequence[Feature]) -> Shapes:
+    """The geometries (n,) of some features."""
+    return np.array([feature.geometry for feature in features], dtype=object)
+
+
+def with_geometries(features: Sequence[Feature], shapes: Shapes) -> list[Feature]:
+    """Features in other shapes; those of which nothing is left are left out."""
+    return [
+        feature if shape is feature.geometry else replace(feature, geometry=shape)
+        for feature, shape in zip(features, shapes, strict=True)
+        if not shape.is_empty
+    ]
+
+
+def bounds(features: Sequence[Feature]) -> NDArray[np.float64]:
+    """The bounds (4,) of some features together."""
+    return np.asarray(shapely.total_bounds(geometries_of(features)))
 
 
 def extent(bounds: NDArray[np.float64]) -> float:
@@ -111,11 +149,15 @@ def moved(polygons: PolygonSet, way: NDArray[np.float64]) -> PolygonSet:
 
 def fit_into(polygons: PolygonSet, frame: NDArray[np.float64]) -> PolygonSet:
     """A set scaled uniformly and centred into a frame (bounds), as in the paper's Figure 9."""
-    if not len(polygons):
-        return polygons
-    box = polygons.bounds
+    return PolygonSet(fitted(polygons.polygons, frame), polygons.identities)
+
+
+def fitted(geometries: Shapes, frame: NDArray[np.float64]) -> Shapes:
+    """Geometries scaled uniformly, together, and centred into a frame."""
+    if not len(geometries):
+        return geometries
+    box = shapely.total_bounds(geometries)
     size, room = box[2:] - box[:2], frame[2:] - frame[:2]
     scale = (room / size).min()
     shift = (frame[:2] + frame[2:]) / 2 - scale * (box[:2] + box[2:]) / 2
-    fitted = shapely.transform(polygons.polygons, lambda points: points * scale + shift)
-    return PolygonSet(fitted, polygons.identities)
+    return shapely.transform(geometries, lambda points: points * scale + shift)

@@ -35,12 +35,17 @@ class TransitionReport:
 
 @dataclass(frozen=True)
 class BuildReport:
-    """What a build wrote and met. ``bytes`` are the sizes of ``files``, in their order."""
+    """What a build wrote and met.
+
+    ``bytes`` are the sizes of ``files``, in their order; ``projection`` says in words what plane
+    the map is drawn in.
+    """
 
     name: str
     files: tuple[Path, ...]
     bytes: tuple[int, ...]
     transitions: tuple[TransitionReport, ...]
+    projection: str
     problems: tuple[Problem, ...]
 
 
@@ -63,6 +68,7 @@ class Rendered:
     files: Mapping[str, bytes]
     card: Card
     transitions: tuple[TransitionReport, ...]
+    projection: str
     problems: tuple[Problem, ...]
 
 
@@ -136,7 +142,12 @@ def render_scene(
         Markup(still_svg(frames, model.title, _shown_step(scene), around)),
     )
     return Rendered(
-        scene.name, files, card, transition_reports(scene, morphs), (*problems, *frames.problems)
+        scene.name,
+        files,
+        card,
+        transition_reports(scene, morphs),
+        scene.projection,
+        (*problems, *frames.problems),
     )
 
 
@@ -155,7 +166,14 @@ def gallery(cards: Sequence[Card], title: str, lang: str = "en") -> bytes:
 def report(rendered: Rendered, files: Sequence[Path]) -> BuildReport:
     """The report of a scene whose files have been written."""
     sizes = tuple(len(content) for content in rendered.files.values())
-    return BuildReport(rendered.name, tuple(files), sizes, rendered.transitions, rendered.problems)
+    return BuildReport(
+        rendered.name,
+        tuple(files),
+        sizes,
+        rendered.transitions,
+        rendered.projection,
+        rendered.problems,
+    )
 
 
 def writable(out_dir: str | os.PathLike[str]) -> Path:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geotween.data.polygons import REGIONS, Identity
+from geotween.data.polygons import Identity
 from geotween.export.backing import Bundle, backings
 from geotween.export.page_grid import GridTrack
 from geotween.export.paint import Paint, Painter
@@ -69,7 +69,7 @@ def _bundles(members: Iterable[Member], painter: Painter) -> list[Bundle]:
         key = str(member.identity.key) if member.identity.keyed else ""
         one, other = member.ends
         paints = (painter.paint(one), painter.paint(other))
-        group = Group(REGIONS, (painter.opacity(one), painter.opacity(other)))
+        group = Group(member.identity.layer, (painter.opacity(one), painter.opacity(other)))
         name = (group, key, paints)
         if name not in found:
             number = numbers.setdefault((group, key), 0)

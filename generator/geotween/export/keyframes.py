@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from geotween.data.load import Scene
-from geotween.data.polygons import REGIONS
 from geotween.data.problems import Problem, Severity
 from geotween.export.bundle import Member, shapes_of
 from geotween.export.easing import EASINGS, Spline
@@ -32,11 +31,15 @@ class Scenery:
 
 @dataclass(frozen=True, eq=False)
 class Keyframes:
-    """A whole map: its page, its static layers, and the shapes of each span."""
+    """A whole map: its page, its static layers, and the shapes of each span.
+
+    ``layers`` are those that move, the lowest first; a ghost lies above them.
+    """
 
     page: Page
     background: str
     scenery: tuple[Scenery, ...]
+    layers: tuple[str, ...]
     easing: Spline | None
     loop: bool
     labels: tuple[str, ...]
@@ -54,7 +57,7 @@ class Keyframes:
         return [span for span, _ in self.spans if span.rest]
 
     def slots(self) -> list[Slot]:
-        """All slots in drawing order: by group, then key, both by first appearance."""
+        """All slots in drawing order: by layer, then group and key by first appearance."""
         groups: dict[Group, None] = {}
         keys: dict[str, int] = {}
         slots: dict[Slot, None] = {}
@@ -63,8 +66,9 @@ class Keyframes:
                 groups.setdefault(shape.slot.group)
                 keys.setdefault(shape.slot.key, len(keys))
                 slots.setdefault(shape.slot)
-        regions_first = sorted(groups, key=lambda group: group.layer != REGIONS)
-        order = {group: place for place, group in enumerate(regions_first)}
+        places = {layer: place for place, layer in enumerate(self.layers)}
+        lowest_first = sorted(groups, key=lambda group: places.get(group.layer, len(places)))
+        order = {group: place for place, group in enumerate(lowest_first)}
         return sorted(
             slots,
             key=lambda s: (
@@ -114,6 +118,7 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
         page,
         model.map.background,
         scenery,
+        scene.layer_order,
         EASINGS[model.motion.easing],
         model.timing.loop,
         tuple(step.label for step in scene.steps),

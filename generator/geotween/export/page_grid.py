@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geotween.data.frame import pixels_per_unit
 from geotween.data.polygons import PolygonSet, bounds_of
 from geotween.motion.rings import next_vertex, rings_of
 from geotween.motion.tracks import Track
@@ -53,12 +54,9 @@ def fit_page(frame: Map, sets: Sequence[PolygonSet]) -> Page:
     box = bounds_of(sets)
     low, high = box[:2], box[2:]
     size = high - low
-    room = frame.width - 2 * frame.padding
-    scale = room / size[0]
-    if frame.height is not None:
-        scale = min(scale, (frame.height - 2 * frame.padding) / size[1])
-        height = frame.height
-    else:
+    scale = pixels_per_unit(frame, box)
+    height = frame.height
+    if height is None:
         height = float(np.ceil(size[1] * scale + 2 * frame.padding))
     direction = np.array([1.0, -1.0 if frame.y == "up" else 1.0])
     middle = np.array([frame.width, height]) / 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,22 +31,26 @@ class Certificate:
     measures: dict[str, float]
 
 
-def certify(division: Division, problems: tuple[Problem, ...]) -> Certificate:
-    """Measure how exactly the pieces make up their polygons.
+def certify(divisions: Sequence[Division], problems: tuple[Problem, ...]) -> Certificate:
+    """Measure how exactly the pieces of each layer's division make up their polygons.
 
     ``partition error`` is the largest area, relative to its polygon, by which the pieces of one
     polygon miss or exceed it; ``pieces`` and ``mends`` are counts.
     """
-    sides = (
-        (division.origin.polygons, division.origin_pieces, division.indices[:, 0]),
-        (division.target.polygons, division.target_pieces, division.indices[:, 1]),
-    )
+    sides = [
+        side
+        for division in divisions
+        for side in (
+            (division.origin.polygons, division.origin_pieces, division.indices[:, 0]),
+            (division.target.polygons, division.target_pieces, division.indices[:, 1]),
+        )
+    ]
     differences = [_differences(*side) for side in sides]
     error = max(float(found.max(initial=0)) for found in differences)
     measures = {
         "partition error": error,
-        "pieces": float(len(division.indices)),
-        "mends": float(len(division.problems)),
+        "pieces": float(sum(len(division.indices) for division in divisions)),
+        "mends": float(sum(len(division.problems) for division in divisions)),
     }
     allowed = [_rounding(whole) for whole, _, _ in sides]
     if any((d > a).any() for d, a in zip(differences, allowed, strict=True)):

@@ -77,10 +77,10 @@ class PiecePair:
 
 @dataclass(frozen=True, eq=False)
 class Morph:
-    """The motion from one set of polygons to another."""
+    """The motion from one set of polygons to another; ``divisions`` has one for each layer."""
 
     tracks: tuple[Track, ...]
-    division: Division
+    divisions: tuple[Division, ...]
     problems: tuple[Problem, ...]
 
     def frame(self, t: float) -> Frame:
@@ -96,9 +96,9 @@ class Morph:
     @cached_property
     def pairs(self) -> tuple[PiecePair, ...]:
         """The paper's SPL: the list of one-to-one pairs of pieces."""
-        division = self.division
         return tuple(
             PiecePair(one, other, _key(division.origin, i), _key(division.target, j))
+            for division in self.divisions
             for one, other, (i, j) in zip(
                 division.origin_pieces, division.target_pieces, division.indices, strict=True
             )
@@ -107,7 +107,7 @@ class Morph:
     @cached_property
     def certificate(self) -> Certificate:
         """What is known about this motion."""
-        return certify(self.division, self.problems)
+        return certify(self.divisions, self.problems)
 
 
 def morph(
@@ -154,7 +154,7 @@ def morph(
         target_set = fit_into(target_set, origin_set.bounds)
     planned = plan(origin_set, target_set, techniques)
     problems = (*origin_problems, *target_problems, *planned.problems)
-    return Morph(planned.tracks, planned.division, problems)
+    return Morph(planned.tracks, planned.divisions, problems)
 
 
 def resolve(
@@ -180,44 +180,61 @@ def resolve(
     )
 
 
-def plan(
-    origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str = REGIONS
-) -> Morph:
-    """Correspond, divide, match and interpolate two sets.
+def plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques) -> Morph:
+    """Correspond, divide, match and interpolate two sets, each layer on its own.
 
     Sets far from the origin are planned near it, where coordinates have digits to spare.
     """
     box = bounds_of([origin, target])
     size, middle = extent(box), (box[:2] + box[2:]) / 2
     if np.abs(middle).max() > NEAR * size:
-        near = _plan(moved(origin, -middle), moved(target, -middle), techniques, layer, size)
+        near = _plan(moved(origin, -middle), moved(target, -middle), techniques, size)
         return _moved_back(near, origin, target, middle)
-    return _plan(origin, target, techniques, layer, size)
+    return _plan(origin, target, techniques, size)
 
 
-def _plan(
+def _plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques, size: float) -> Morph:
+    planned = [
+        _plan_layer(origin.in_layer(layer), target.in_layer(layer), techniques, layer, size)
+        for layer in _layers(origin, target)
+    ]
+    return Morph(
+        tuple(track for morph in planned for track in morph.tracks),
+        tuple(division for morph in planned for division in morph.divisions),
+        tuple(problem for morph in planned for problem in morph.problems),
+    )
+
+
+def _plan_layer(
     origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str, size: float
 ) -> Morph:
     related = correspond(origin, target, techniques.correspondence)
     divided = divide(related, techniques.division)
     tolerance = RELATIVE_TOLERANCE * size
     tracks, problems = interpolate(match(divided, techniques.matching), layer, tolerance)
-    return Morph(tracks, divided, (*divided.problems, *problems))
+    return Morph(tracks, (divided,), (*divided.problems, *problems))
+
+
+def _layers(origin: PolygonSet, target: PolygonSet) -> list[str]:
+    return list(dict.fromkeys([*origin.layers, *target.layers])) or [REGIONS]
 
 
 def _moved_back(
     morph: Morph, origin: PolygonSet, target: PolygonSet, way: NDArray[np.float64]
 ) -> Morph:
     back = partial(np.add, way)
-    division = replace(
-        morph.division,
-        origin=origin,
-        target=target,
-        origin_pieces=shapely.transform(morph.division.origin_pieces, back),
-        target_pieces=shapely.transform(morph.division.target_pieces, back),
+    divisions = tuple(
+        replace(
+            division,
+            origin=origin.in_layer(layer),
+            target=target.in_layer(layer),
+            origin_pieces=shapely.transform(division.origin_pieces, back),
+            target_pieces=shapely.transform(division.target_pieces, back),
+        )
+        for layer, division in zip(_layers(origin, target), morph.divisions, strict=True)
     )
     tracks = tuple(replace(track, vertices=track.vertices + way) for track in morph.tracks)
-    return Morph(tracks, division, morph.problems)
+    return Morph(tracks, divisions, morph.problems)
 
 
 def interpolate(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -98,14 +98,16 @@ class Document:
         return len(lines), len(lines[-1])
 
 
-def read_text(path: Path, name: str, *, named_by: Fault | None = None) -> str:
-    """The text of a UTF-8 file.
+def read_text(
+    path: Path, name: str, *, named_by: Fault | None = None, encoding: str | None = None
+) -> str:
+    """The text of a file, in UTF-8 unless an encoding is named.
 
     Raises
     ------
     SceneError
         At the place that names the file (``named_by``) where it cannot be opened; in the file
-        itself where it is not UTF-8.
+        itself where it is not in its encoding.
     """
     try:
         raw = path.read_bytes()
@@ -115,15 +117,21 @@ def read_text(path: Path, name: str, *, named_by: Fault | None = None) -> str:
         if named_by is None:
             raise SceneError([Fault(name, 1, 1, text)]) from None
         hint = _similar_file(path)
-        fault = Fault(named_by.file, named_by.line, named_by.column, text, hint, named_by.text)
-        raise SceneError([fault]) from None
+        raise SceneError([replace(named_by, message=text, hint=hint)]) from None
     try:
-        return raw.decode("utf-8-sig")
+        return raw.decode(encoding or "utf-8-sig")
+    except LookupError:
+        fault = named_by or Fault(name, 1, 1, "")
+        hint = "such as utf-8, latin-1, cp1252 or utf-16"
+        raise SceneError([replace(fault, message=f"no encoding {encoding}", hint=hint)]) from None
     except UnicodeDecodeError as error:
-        before = error.object[: error.start].decode()  # without a byte order mark
+        before = error.object[: error.start].decode(errors="replace")
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        message = f"the byte 0x{error.object[error.start]:02X} is not UTF-8"
-        raise SceneError([Fault(name, line, column, message, "save the file as UTF-8")]) from None
+        message = f"the byte 0x{error.object[error.start]:02X} is not {encoding or 'UTF-8'}"
+        hint = "save the file as UTF-8"
+        if named_by is not None:
+            hint += ", or name its encoding: {file: …, encoding: latin-1}"
+        raise SceneError([Fault(name, line, column, message, hint)]) from None
 
 
 def read_json(document: Document) -> Any:

@@ -2,27 +2,100 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from geotween.scene.values import (
     Colour,
     Pixels,
     Polygons,
+    Positive,
     Seconds,
     Share,
+    Simplify,
     StepTime,
     Text,
+    Threshold,
     Transition,
 )
 
 Easing = Literal["linear", "ease", "ease-in", "ease-out", "ease-in-out"]
+Period = Literal["year", "quarter", "month", "week", "day", "hour"]
 Speed = Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)]
 
 
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, validate_by_name=False)
+
+
+def _file_alone(value: Any) -> Any:
+    return {"file": value} if isinstance(value, str) else value
+
+
+class Source(_Part):
+    """A file of polygons: which of its layers and features are meant, and its columns."""
+
+    file: Text = Field(description="relative to the scene; a .zip may hold a Shapefile")
+    layer: Text | None = Field(None, description="of a GeoPackage or KML; the object of a TopoJSON")
+    key: Text | None = Field(None, description="column: what is the same thing over time")
+    class_: Text | None = Field(None, alias="class", description="column: what decides the colour")
+    name: Text | None = Field(None, description="column: what a feature is called")
+    where: Text | None = Field(None, description="SQL expression over the columns (SQLite)")
+    encoding: Text | None = Field(None, description="such as latin-1, where it is not UTF-8")
+    crs: Text | None = Field(None, description="such as EPSG:4326, where the file names none")
+
+
+class Data(Source):
+    """All steps at once: a file with a column of times, or a folder or glob of files."""
+
+    time: Text | None = Field(None, description="column; else the time is in the files' names")
+    times: tuple[Text, ...] | None = Field(
+        None,
+        description="times to keep, or periods: 2020, 2020-09, or 2020-09-01/2020-09-14",
+        min_length=2,
+    )
+    time_format: Text | None = Field(None, description="of the column, as strptime takes it")
+
+
+class Hotspots(_Part):
+    """Points with times, as areas where they are dense."""
+
+    file: Text = Field(description="a .csv, relative to the scene")
+    x: Text | None = Field(None, description="column, with y: planar coordinates")
+    y: Text | None = None
+    lon: Text | None = Field(None, description="column, with lat: longitude in degrees")
+    lat: Text | None = None
+    time: Text = Field(description="column")
+    time_format: Text | None = Field(None, description="of the column, as strptime takes it")
+    period: Period | None = Field(None, description="what makes a step; else each distinct time")
+    bandwidth: Positive | None = Field(
+        None, description="of the Gaussian kernel, in map units: metres where there are lon and lat"
+    )
+    threshold: Threshold | None = Field(
+        None, description="points per square map unit (km² with lon, lat), or of the peak: 20%"
+    )
+    levels: tuple[Threshold, ...] | None = Field(
+        None, description="several thresholds, each a class", min_length=1
+    )
+    where: Text | None = Field(None, description="SQL expression over the columns (SQLite)")
+    encoding: Text | None = None
+    crs: Text | None = Field(None, description="of x and y")
+
+    @model_validator(mode="after")
+    def _one_pair_and_one_kind(self) -> Self:
+        pairs = [(self.x, self.y), (self.lon, self.lat)]
+        if [pair for pair in pairs if any(pair)] != [pair for pair in pairs if all(pair)] or all(
+            map(any, pairs)
+        ):
+            raise ValueError("name the columns x and y, or lon and lat")
+        if not any(map(any, pairs)):
+            raise ValueError("name the columns of the coordinates: x and y, or lon and lat")
+        if self.threshold is not None and self.levels is not None:
+            raise ValueError("name a threshold or levels, not both")
+        if self.levels and len({isinstance(level, str) for level in self.levels}) > 1:
+            raise ValueError("levels are all shares of the peak, or none is")
+        return self
 
 
 class StyleRule(_Part):
@@ -65,6 +138,26 @@ class Map(_Part):
         "shared", description="one frame for all steps, or every step centred in the same frame"
     )
     y: Literal["up", "down"] = "up"
+    projection: Text = Field(
+        "auto",
+        description="auto, an EPSG code or PROJ string, or none: coordinates are drawn as they are",
+    )
+    crs: Text | None = Field(
+        None, description="of coordinates written in the scene, and of files that name none"
+    )
+    simplify: Simplify = Field(
+        0.25, description="px by which a line may be off; off keeps every vertex"
+    )
+    min_area: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+        0.0, description="px²; smaller parts and holes are left out"
+    )
+    clean: bool = Field(False, description="close gaps and overlaps along common borders")
+    classes: Literal["auto", "layers", "together"] = Field(
+        "auto", description="layers: each class moves on its own; auto: where classes overlap"
+    )
+    class_order: tuple[Text, ...] = Field(
+        (), description="the order that classes are drawn in, the lowest first"
+    )
     layers: tuple[Layer, ...] = ()
 
     @model_validator(mode="after")
@@ -107,7 +200,7 @@ class Step(_Part):
     time: StepTime | None = None
     caption: Text = ""
     hold: Seconds | None = None
-    polygons: Polygons
+    polygons: Polygons = Field(None, description="needed unless data or hotspots has them")
 
 
 class SceneFile(_Part):
@@ -123,4 +216,8 @@ class SceneFile(_Part):
     style: Style = Style()
     motion: Motion = Motion()
     timing: Timing = Timing()
-    steps: Annotated[tuple[Step, ...], Field(min_length=2)]
+    data: Annotated[Data, BeforeValidator(_file_alone)] | None = None
+    hotspots: Hotspots | None = None
+    steps: tuple[Step, ...] = Field(
+        (), description="at least two; with data or hotspots: words for their steps"
+    )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import datetime
+from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
@@ -36,6 +37,8 @@ _EXAMPLES = {
 }
 
 
+Model = TypeVar("Model", bound=BaseModel)
+
 _TIME: TypeAdapter[Any] = TypeAdapter(StepTime)
 _TRANSITION: TypeAdapter[Any] = TypeAdapter(Transition)
 _SECONDS: TypeAdapter[Any] = TypeAdapter(Seconds)
@@ -57,17 +60,59 @@ def read_scene(document: Document) -> tuple[SceneFile | None, Any, list[Fault]]:
         hint = "a scene begins with a title and two steps"
         message = "the scene is empty" if values is None else "expected a mapping (key: value)"
         raise SceneError([*faults, document.fault_at(1, 1, message, hint)])
-    faults += _check_times(document, values)
+    faults += _check_sources(document, values) + _check_times(document, values)
+    model, found = validated(document, SceneFile, values)
+    return model, values, faults + found
+
+
+def validated(
+    document: Document, model: type[Model], values: Any, at: Location = ()
+) -> tuple[Model | None, list[Fault]]:
+    """Plain values as a model, or what is wrong with them; ``at`` is where they stand."""
     try:
-        return SceneFile.model_validate(values), values, faults
+        return model.model_validate(values), []
     except ValidationError as error:
-        found = (_fault(document, dict(item)) for item in error.errors())
-        return None, values, faults + [fault for fault in found if fault is not None]
+        return None, [_fault(document, dict(item), model, at) for item in error.errors()]
+
+
+def check_transitions(
+    document: Document, timing: Any, times: list[Any], place: Callable[[int], Location]
+) -> list[Fault]:
+    """Whether the timing fits the steps' times; None is a step without one.
+
+    ``place`` says where a step stands in the scene.
+    """
+    transition, count = _as(_TRANSITION, timing.get("transition", "2")), len(times) - 1
+    at: Location = ("timing", "transition")
+    faults = []
+    if isinstance(transition, tuple) and len(transition) != count:
+        message = f"{len(transition)} transition times for {count} transitions"
+        faults.append(document.fault(at, message, "list one for each pair of steps"))
+    if transition == "proportional":
+        for index, time in enumerate(times):
+            if time is None:
+                message = (
+                    f"proportional timing needs a time for each step; step {index + 1} has none"
+                )
+                faults.append(document.fault(place(index), message))
+        for number, (before, after) in enumerate(pairwise(times), start=1):
+            if before is not None and before == after:
+                message = f"proportional timing: steps {number} and {number + 1} have the same time"
+                faults.append(document.fault((*place(number), "time"), message))
+    elif transition is not None and _as(_SECONDS, timing.get("total")) is not None:
+        message = '"total" goes with transition: proportional'
+        faults.append(document.fault(("timing", "total"), message, at_key=True))
+    return faults
 
 
 def scene_schema() -> dict[str, Any]:
     """The JSON Schema of a scene file, for editors."""
     schema = SceneFile.model_json_schema(by_alias=True)
+    schema["if"] = {"not": {"anyOf": [{"required": ["data"]}, {"required": ["hotspots"]}]}}
+    schema["then"] = {
+        "required": ["steps"],
+        "properties": {"steps": {"minItems": 2, "items": {"required": ["polygons"]}}},
+    }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "geotween scene",
@@ -75,21 +120,22 @@ def scene_schema() -> dict[str, Any]:
     }
 
 
-def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
-    location: Location = tuple(step for step in error["loc"] if step != "[key]")
+def _fault(
+    document: Document, error: dict[str, Any], model: type[BaseModel], at: Location
+) -> Fault:
+    inside: Location = tuple(step for step in error["loc"] if step != "[key]")
+    location = (*at, *inside)
     name = location[-1] if location else "scene"
     kind, context = error["type"], error.get("ctx", {})
     if kind == "extra_forbidden":
-        hint = did_you_mean(str(name), _known_keys(location[:-1]))
+        hint = did_you_mean(str(name), _known_keys(model, inside[:-1]))
         return document.fault(location, f'unknown key "{name}"', hint, at_key=True)
     if kind == "missing":
         message = f'{_called(location[:-1])} needs "{name}"'
         return document.fault(location[:-1], message, _EXAMPLES.get(str(name), ""))
-    if kind == "too_short" and location == ("steps",):
-        count = len(error["input"])  # the model counts only those without a fault of their own
-        message = f"a scene needs at least two steps, not {count}"
-        hint = _EXAMPLES["steps"]
-        return document.fault(location, message, hint, at_key=True) if count < 2 else None
+    if kind == "too_short":
+        least = context["min_length"]
+        return document.fault(location, f'"{name}": expected at least {least}', at_key=True)
     if kind == "literal_error":
         known = [word.strip(" '") for word in context["expected"].replace(" or ", ",").split(",")]
         given = error["input"]
@@ -103,13 +149,45 @@ def _fault(document: Document, error: dict[str, Any]) -> Fault | None:
     return document.fault(location, f"{_called(location)}: {message}, not {_shown(error['input'])}")
 
 
+def _whole(values: dict[str, Any]) -> bool:
+    """Whether the polygons of all steps come from one place."""
+    return "data" in values or "hotspots" in values
+
+
+def _check_sources(document: Document, values: dict[str, Any]) -> list[Fault]:
+    """Whether there are polygons, and in one place: the steps, data, or hotspots."""
+    steps = values.get("steps")
+    if "data" in values and "hotspots" in values:
+        message = "a scene has data or hotspots, not both"
+        return [document.fault(("hotspots",), message, at_key=True)]
+    if steps is None and not _whole(values):
+        hint = f"{_EXAMPLES['steps']}; or name a file of all steps: data: fires.gpkg"
+        return [document.fault((), 'the scene needs "steps"', hint)]
+    if not isinstance(steps, list):
+        return []
+    if not _whole(values) and len(steps) < 2:
+        message = f"a scene needs at least two steps, not {len(steps)}"
+        return [document.fault(("steps",), message, _EXAMPLES["steps"], at_key=True)]
+    faults = []
+    for index, step in enumerate(steps):
+        if not isinstance(step, dict):
+            continue
+        if _whole(values) and "polygons" in step:
+            message = "polygons come from this step or from the whole scene's data, not from both"
+            faults.append(document.fault(("steps", index, "polygons"), message, at_key=True))
+        elif not _whole(values) and "polygons" not in step:
+            message = f'step {index + 1} needs "polygons"'
+            faults.append(document.fault(("steps", index), message, _EXAMPLES["polygons"]))
+    return faults
+
+
 def _check_times(document: Document, values: dict[str, Any]) -> list[Fault]:
     """What the model cannot see field by field: times that fit each other and the timing.
 
     Reads the plain values, so as to find these in a scene that has other faults too.
     """
     steps, timing = values.get("steps"), values.get("timing", {})
-    if not isinstance(steps, list) or not isinstance(timing, dict):
+    if not isinstance(steps, list):
         return []
     written = [step.get("time") if isinstance(step, dict) else None for step in steps]
     times = [_as(_TIME, time) for time in written]
@@ -124,27 +202,10 @@ def _check_times(document: Document, values: dict[str, Any]) -> list[Fault]:
                 "write all times of a scene as dates, or as date-times, or as numbers",
             )
         )
-    transition, count = _as(_TRANSITION, timing.get("transition", "2")), len(steps) - 1
-    place: Location = ("timing", "transition")
-    if isinstance(transition, tuple) and len(transition) != count:
-        message = f"{len(transition)} transition times for {count} transitions"
-        faults.append(document.fault(place, message, "list one for each pair of steps"))
-    if transition == "proportional" and len(kinds) < 2:
-        for index, time in enumerate(times):
-            if time is None and written[index] is None:
-                message = (
-                    f"proportional timing needs a time for each step; step {index + 1} has none"
-                )
-                faults.append(document.fault(("steps", index), message))
-        for number, (before, after) in enumerate(pairwise(times), start=1):
-            if before is not None and before == after:
-                message = f"proportional timing: steps {number} and {number + 1} have the same time"
-                faults.append(document.fault(("steps", number, "time"), message))
-    elif (
-        transition not in ("proportional", None) and _as(_SECONDS, timing.get("total")) is not None
-    ):
-        message = '"total" goes with transition: proportional'
-        faults.append(document.fault(("timing", "total"), message, at_key=True))
+    if isinstance(timing, dict) and not _whole(values):
+        # A time that cannot be read is a fault of its own; here it counts as written.
+        known = [text if time is None else time for time, text in zip(times, written, strict=True)]
+        faults += check_transitions(document, timing, known, lambda index: ("steps", index))
     return faults
 
 
@@ -166,9 +227,8 @@ def _kind_of(times: list[Any]) -> str:
     return _kind(next(time for time in times if time is not None))
 
 
-def _known_keys(location: Location) -> list[str]:
-    """The keys that the model knows in the mapping at a location."""
-    model: Any = SceneFile
+def _known_keys(model: Any, location: Location) -> list[str]:
+    """The keys that a model knows in the mapping at a location."""
     for step in location:
         if isinstance(step, int):
             continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 import re
 from typing import Annotated, Any
 
@@ -13,9 +14,11 @@ Time = datetime.date | datetime.datetime | float
 
 _SCALAR: Any = ["string", "number", "boolean"]  # YAML editors type a bare 1984 or no
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_MONTH = re.compile(r"\d{4}-\d{2}")
 SHORTEST, LONGEST = 0.05, 3600  # seconds of a transition: a frame or two, and an hour
 # Beyond it, double precision no longer tells whole numbers apart.
 LARGEST_TIME = 1e15
+COARSEST = 100.0  # px of simplification: beyond it hardly a shape is left
 # What XML cannot hold, or UTF-8 cannot write.
 UNWRITABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
 
@@ -43,10 +46,11 @@ def _colour(value: str) -> str:
     return shown
 
 
-def _time(value: Any) -> Time:
+def read_time(value: Any) -> Time:
     """A date, a date-time or a number, from the text that was written.
 
-    A bare year reads as a number; both put steps in the same order.
+    A month (2024-03) reads as its first day, a bare year as a number: both put steps in the same
+    order.
     """
     if isinstance(value, datetime.date | float):
         return value
@@ -56,6 +60,8 @@ def _time(value: Any) -> Time:
         if abs(number) > LARGEST_TIME:
             raise ValueError(f"expected a number of at most {LARGEST_TIME:g}, not {text}")
         return number
+    if _MONTH.fullmatch(text):
+        text += "-01"
     for read in (datetime.date.fromisoformat, datetime.datetime.fromisoformat):
         try:
             return read(text)
@@ -89,6 +95,29 @@ def _seconds(value: Any) -> float:
     return seconds
 
 
+def _simplify(value: Any) -> float:
+    try:
+        pixels = 0.0 if value == "off" else float(value)
+    except (TypeError, ValueError):
+        pixels = -1.0
+    if not 0 <= pixels <= COARSEST:
+        raise ValueError(f"expected a tolerance in px from 0 to {COARSEST:g}, or off")
+    return pixels
+
+
+def _threshold(value: Any) -> float | str:
+    """A density, or a share of the peak as it was written: ``20%``."""
+    text = str(value).strip()
+    share = text.endswith("%")
+    try:
+        number = float(text.removesuffix("%"))
+    except ValueError:
+        number = 0.0
+    if not (0 < number < 100 if share else 0 < number < math.inf):
+        raise ValueError("expected a density above 0, or a share of its peak such as 20%")
+    return text if share else number
+
+
 Text = Annotated[str, AfterValidator(_text), WithJsonSchema({"type": _SCALAR})]
 Colour = Annotated[
     str,
@@ -97,7 +126,7 @@ Colour = Annotated[
 ]
 StepTime = Annotated[
     Time,
-    PlainValidator(_time),
+    PlainValidator(read_time),
     WithJsonSchema(
         {"type": ["string", "number"], "description": "a date, a date-time or a number"}
     ),
@@ -119,6 +148,21 @@ Transition = Annotated[
 ]
 Seconds = Annotated[float, Field(ge=0, le=LONGEST, allow_inf_nan=False)]
 Pixels = Annotated[float, Field(ge=0, le=20_000, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Simplify = Annotated[
+    float,
+    PlainValidator(_simplify),
+    WithJsonSchema(
+        {"anyOf": [{"type": "number", "minimum": 0, "maximum": COARSEST}, {"const": "off"}]}
+    ),
+]
+Threshold = Annotated[
+    float | str,
+    PlainValidator(_threshold),
+    WithJsonSchema(
+        {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string", "pattern": "%$"}]}
+    ),
+]
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 Polygons = Annotated[
@@ -127,13 +171,15 @@ Polygons = Annotated[
     WithJsonSchema(
         {
             "description": (
-                "a path to a .geojson, a WKT text, inline GeoJSON, or a list of polygons: each a "
+                "a path to a file, {file: …, key: …, class: …}, a WKT text, inline GeoJSON, or a "
+                "list of polygons: each a "
                 "ring [[x, y], ...], a list of rings (the first the outer one, the others holes), "
                 "a WKT text, or a feature {key, class, name, polygon}"
             ),
             "anyOf": [
                 {"type": "string"},
                 {"type": "object", "required": ["type"]},
+                {"type": "object", "required": ["file"]},
                 {
                     "type": "array",
                     "items": {
