@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geotween.data.overlaps import crossing_grid, name_of
-from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent
+from geotween.data.overlaps import crossing_grid
+from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent, name_of
 from geotween.data.problems import Problem, Severity
 
 # Two polygons that run along each other for this part of the shorter boundary have a border in

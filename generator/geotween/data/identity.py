@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon
 
-from geotween.data.polygons import REGIONS, Feature
+from geotween.data.overlaps import overlapping
+from geotween.data.polygons import REGIONS, Feature, geometries_of
 from geotween.data.problems import Problem
 from geotween.scene.model import Map
 
@@ -100,16 +100,12 @@ def _merged(group: list[Feature]) -> Feature:
 
 def _overlapping(features: Sequence[Feature]) -> bool:
     """Whether polygons of different classes lie on each other by more than borders may."""
-    shapes = np.array([f.geometry for f in features if f.class_ is not None], dtype=object)
-    numbers: dict[object, int] = {}
-    classes = np.array(
-        [numbers.setdefault(f.class_, len(numbers)) for f in features if f.class_ is not None]
-    )
-    if len(numbers) < 2 or shapely.coverage_is_valid(shapes):
+    classed = [feature for feature in features if feature.class_ is not None]
+    if len({feature.class_ for feature in classed}) < 2:
         return False
-    one, other = shapely.STRtree(shapes).query(shapes, predicate="intersects")
-    pairs = (one < other) & (classes[one] != classes[other])
-    one, other = one[pairs], other[pairs]
-    shared = shapely.area(shapely.intersection(shapes[one], shapes[other]))
-    smaller = np.minimum(shapely.area(shapes[one]), shapely.area(shapes[other]))
-    return bool((shared > OVERLAPPING * smaller).any())
+    shapes = geometries_of(classed)
+    pairs = overlapping(shapes, shapely.STRtree(shapes))
+    return any(
+        classed[one].class_ != classed[other].class_
+        for one, other in pairs.indices[pairs.share > OVERLAPPING]
+    )

@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
-from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent
+from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent, name_of
 from geotween.data.problems import Problem, Severity
 
 # Two polygons that share more than this part of the smaller one's area overlap by their shape;
@@ -33,15 +33,15 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class _Pairs:
+class Pairs:
     """Features that overlap: their indices in the set (n, 2), first < second, and areas (n,)."""
 
     indices: Ints
     shared: Floats
     share: Floats  # of the smaller one's area
 
-    def where(self, chosen: NDArray[np.bool_]) -> _Pairs:
-        return _Pairs(self.indices[chosen], self.shared[chosen], self.share[chosen])
+    def where(self, chosen: NDArray[np.bool_]) -> Pairs:
+        return Pairs(self.indices[chosen], self.shared[chosen], self.share[chosen])
 
 
 def separate(features: Sequence[Feature], *, step: str = "") -> tuple[list[Feature], list[Problem]]:
@@ -80,7 +80,7 @@ def separate(features: Sequence[Feature], *, step: str = "") -> tuple[list[Featu
         return [], []
     thinnest = RELATIVE_TOLERANCE * extent(shapely.total_bounds(geometries))
     tree = shapely.STRtree(geometries)
-    pairs = _overlapping(geometries, tree, thinnest)
+    pairs = overlapping(geometries, tree)
     if not len(pairs.indices):
         return list(features), []
 
@@ -109,14 +109,6 @@ def separate(features: Sequence[Feature], *, step: str = "") -> tuple[list[Featu
     return kept, problems
 
 
-def name_of(feature: Feature, index: int) -> str:
-    """What a feature is called in problems: its name, its key, or its position in the set."""
-    if feature.name or feature.key is not None:
-        return feature.name or str(feature.key)
-    position = index if feature.position is None else feature.position
-    return f"polygon {position + 1}"
-
-
 def crossing_grid(geometries: Geometries) -> float:
     """The cells of a grid on which lines are crossed, in the data's units: some 16 roundings.
 
@@ -127,8 +119,9 @@ def crossing_grid(geometries: Geometries) -> float:
     return float(2.0 ** (np.ceil(np.log2(farthest)) - 48))
 
 
-def _overlapping(geometries: Geometries, tree: shapely.STRtree, thinnest: float) -> _Pairs:
-    """All pairs that share more than noise."""
+def overlapping(geometries: Geometries, tree: shapely.STRtree) -> Pairs:
+    """All pairs of valid geometries that share more than noise; ``tree`` holds the geometries."""
+    thinnest = RELATIVE_TOLERANCE * extent(shapely.total_bounds(geometries))
     grid = crossing_grid(geometries)
     invalid = ~shapely.is_empty(shapely.coverage_invalid_edges(geometries))
     seen = np.zeros(len(geometries), dtype=bool)
@@ -153,7 +146,7 @@ def _overlapping(geometries: Geometries, tree: shapely.STRtree, thinnest: float)
     order = np.lexsort(indices.T[::-1])
     indices, shared = indices[order], shared[order]
     smaller = shapely.area(geometries)[indices].min(axis=1)
-    return _Pairs(indices, shared, shared / smaller)
+    return Pairs(indices, shared, shared / smaller)
 
 
 def _same_area(features: Sequence[Feature]) -> Ints:
@@ -251,7 +244,7 @@ def _ranks(sizes: Floats) -> Ints:
 
 
 def _told(
-    pairs: _Pairs, what: str, hint: str, names: Sequence[str], steps: tuple[str, ...]
+    pairs: Pairs, what: str, hint: str, names: Sequence[str], steps: tuple[str, ...]
 ) -> list[Problem]:
     if not len(pairs.indices):
         return []

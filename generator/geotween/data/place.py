@@ -125,6 +125,9 @@ def place(
             shapes[i] = part
         chosen[projection.words] = projection
         problems += met
+    if frame.y == "down":
+        message = '"y: down" turns projected data upside down'
+        problems.append(Problem("upside down", "warning", message, hint="leave it out"))
     units = {_metres(projection.crs) for projection in chosen.values()}
     metres = units.pop() if len(units) == 1 and not apart else None
     words = "; ".join(chosen)

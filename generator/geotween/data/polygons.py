@@ -111,6 +111,14 @@ def bounds_of(sets: Sequence[PolygonSet]) -> NDArray[np.float64]:
     return np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
 
 
+def name_of(feature: Feature, index: int) -> str:
+    """What a feature is called in problems: its name, its key, or its position in the set."""
+    if feature.name or feature.key is not None:
+        return feature.name or str(feature.key)
+    position = index if feature.position is None else feature.position
+    return f"polygon {position + 1}"
+
+
 def geometries_of(features: Sequence[Feature]) -> Shapes:
     """The geometries (n,) of some features."""
     return np.array([feature.geometry for feature in features], dtype=object)

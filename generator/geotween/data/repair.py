@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
-from geotween.data.polygons import RELATIVE_TOLERANCE, Feature
+from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, name_of
 from geotween.data.problems import Problem
 
 
@@ -28,7 +28,7 @@ def repair(
     steps = (step,) if step else ()
     problems: list[Problem] = []
     given = np.array([f.geometry for f in features], dtype=object)
-    names = [_name(f, index) for index, f in enumerate(features)]
+    names = [name_of(f, index) for index, f in enumerate(features)]
 
     if winding:
         problems += _wound_wrongly(given, steps)
@@ -90,13 +90,6 @@ def _made_valid(broken: Polygon | MultiPolygon) -> MultiPolygon:
         valid = shapely.make_valid(broken, method="linework")
     parts = shapely.get_parts(shapely.get_parts(valid))
     return MultiPolygon([part for part in parts if isinstance(part, Polygon)])
-
-
-def _name(feature: Feature, index: int) -> str:
-    if feature.name or feature.key is not None:
-        return feature.name or str(feature.key)
-    position = index if feature.position is None else feature.position
-    return f"polygon {position + 1}"
 
 
 def _in_words(reason: str) -> str:

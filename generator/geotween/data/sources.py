@@ -222,7 +222,11 @@ class SourceReader:
         except SelectionError as error:
             self._report(self.document, place, f'"where": {error}', there_are(names_of(rows)))
             return held
-        return replace(held, features=[held.features[i] for i in kept])
+        problems = held.problems
+        if not kept:
+            message = f'"where" selects none of the {len(rows)} features of {held.name}'
+            problems = (*problems, Problem("no selection", "warning", message))
+        return replace(held, features=[held.features[i] for i in kept], problems=problems)
 
     def _beside(self, at: Location, word: str) -> Location:
         """The place of another word of a source whose file stands at a place."""

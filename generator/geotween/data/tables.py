@@ -106,7 +106,8 @@ def _gdal(path: Path, layer: str | None, encoding: str | None) -> Table:
     try:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            layers: list[str] = [str(name) for name, _ in pyogrio.list_layers(where)]
+            # Tables without geometry, such as styles, are none.
+            layers = [str(name) for name, kind in pyogrio.list_layers(where) if kind is not None]
             chosen = _layer(layers, layer)
             meta, _, binary, fields = pyogrio.raw.read(
                 where, layer=chosen, encoding=encoding, datetime_as_string=True
@@ -130,11 +131,13 @@ def _gdal(path: Path, layer: str | None, encoding: str | None) -> Table:
 
 
 def _layer(layers: Sequence[str], wanted: str | None) -> str | None:
+    if not layers:
+        raise UnreadableError("the file has no geometry")
     if wanted is None and len(layers) == 1:
-        return None
+        return layers[0]
     if wanted in layers:
         return wanted
-    hint = f"there are {', '.join(layers)}" if layers else "it has no layers"
+    hint = f"there are {', '.join(layers)}"
     if wanted is None:
         raise UnreadableError("the file has several layers: name one with layer:", hint)
     raise UnreadableError(f'there is no layer "{wanted}"', hint)
