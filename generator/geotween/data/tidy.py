@@ -13,7 +13,8 @@ from geotween.data.identity import class_layers
 from geotween.data.overlaps import separate
 from geotween.data.polygons import Feature, Shapes, geometries_of, with_geometries
 from geotween.data.problems import Problem
-from geotween.data.simplify import drop_small, simplify
+from geotween.data.simplify import simplify
+from geotween.data.small import drop_small
 from geotween.scene.model import Map
 
 # Widest gap along a common border that cleaning closes, in px: what is wider can be seen, and may
