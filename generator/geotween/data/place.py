@@ -59,14 +59,10 @@ def crs_of_all(document: Document, frame: Map, sources: Sequence[Held]) -> list[
         return [None] * len(sources)  # without a need for pyproj
     bare = [i for i, s in enumerate(sources) if names[i] is None and s.lonlat and s.features]
     if bare and frame.projection != "none":
-        box = _bounds([sources[i] for i in bare])
-        if _lonlat(box):
+        _check_bare(document, [sources[i] for i in bare])
+        if _lonlat(_bounds([sources[bare[0]]])):
             for i in bare:
                 names[i] = GEOGRAPHIC
-        elif _swapped(box):
-            at = sources[bare[0]].at
-            message = f"{sources[bare[0]].name} has latitudes up to {_highest(box):g}"
-            raise SceneError([document.fault(at, message, f"{_SWAPPED}; {_OR_PLANAR}")])
     first = next((name for s, name in zip(sources, names, strict=True) if s.name and name), None)
     for i, source in enumerate(sources):
         if names[i] is None and not source.name:
@@ -182,6 +178,25 @@ def _with(features: Sequence[list[Feature]], shapes: Sequence[Shapes]) -> list[l
     return [with_geometries(*of_one) for of_one in zip(features, shapes, strict=True)]
 
 
+def _check_bare(document: Document, sources: Sequence[Held]) -> None:
+    """Raise where coordinates without a system can be longitudes and latitudes in some files only.
+
+    Those are planar in all of them, or in none.
+    """
+    boxes = [_bounds([source]) for source in sources]
+    odd = [i for i, box in enumerate(boxes) if not _lonlat(box)]
+    if not odd:
+        return
+    source, box = sources[odd[0]], boxes[odd[0]]
+    if any(map(_swapped, boxes)):
+        message = f"{source.name} has latitudes up to {_highest(box):g}"
+        raise SceneError([document.fault(source.at, message, f"{_SWAPPED}; {_OR_PLANAR}")])
+    if len(odd) < len(sources):
+        message = f"{source.name} is not in longitude and latitude, as other files seem to be"
+        hint = f"name its system: {{file: …, crs: …}}; {_OR_PLANAR}"
+        raise SceneError([document.fault(source.at, message, hint)])
+
+
 def _read(document: Document, source: Held, frame: Map, name: str) -> CRS:
     """A system by its name.
 
@@ -190,7 +205,8 @@ def _read(document: Document, source: Held, frame: Map, name: str) -> CRS:
     SceneError
         Where pyproj is missing, or knows no such system.
     """
-    at = _MAP_CRS if name == frame.crs and not source.crs else source.at
+    own = (*source.at[:-1], "crs") if source.at[-1:] == ("file",) else source.at
+    at = own if source.crs else _MAP_CRS if frame.crs else source.at
     try:
         from geotween.data.projection import read_crs
 
@@ -203,8 +219,7 @@ def _read(document: Document, source: Held, frame: Map, name: str) -> CRS:
         hint = "pip install 'geotween[geo]', or draw it as it is: map: {projection: none}"
         raise SceneError([document.fault(at, message, hint)]) from None
     except ValueError as error:
-        hint = "expected a code such as EPSG:4326, or a PROJ string"
-        raise SceneError([document.fault(at, f'"crs": {error}', hint)]) from None
+        raise SceneError([document.fault(at, f'"crs": {error}')]) from None
 
 
 def _check(document: Document, frame: Map, sources: Sequence[Held], systems: Sequence[Any]) -> None:
@@ -223,7 +238,8 @@ def _check(document: Document, frame: Map, sources: Sequence[Held], systems: Seq
                 message = f"{what} names no coordinate reference system"
                 faults.append(document.fault(source.at, message, hint))
         elif system.is_geographic and np.abs(box[[1, 3]]).max() > 90 + 1e-9:
-            hint = _SWAPPED if _swapped(box) else "name its coordinate reference system: crs: …"
+            said = f"it is said to be in {_called(system)}: correct that"
+            hint = _SWAPPED if _swapped(box) else f"{said}; {_OR_PLANAR}"
             message = f"{what} has latitudes up to {_highest(box):g}"
             faults.append(document.fault(source.at, message, hint))
     if faults:

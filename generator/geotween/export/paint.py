@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from geotween.data.polygons import Identity
@@ -11,7 +11,9 @@ from geotween.scene.model import Style, StyleRule
 # Okabe and Ito, "Color Universal Design" (2008): told apart with any kind of colour vision. Their
 # black is left for text and lines.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7", "#f0e442")
-STROKE, WIDTH, OPACITY = "#ffffff", 0.75, 0.9
+STROKE, WIDTH, OPACITY = "#ffffff", 0.75, 1.0
+# From little to much: classes that lie on each other are degrees of one thing.
+RAMP = ("#b3d7ec", "#00304f")
 
 
 @dataclass(frozen=True)
@@ -38,12 +40,21 @@ GHOST = Paint("none", "#444444", 1.0, "4 3")
 
 
 class Painter:
-    """The paint and opacity of each identity; classes without a colour take the palette's."""
+    """The paint and opacity of each identity.
 
-    def __init__(self, style: Style, identities: Iterable[Identity]) -> None:
+    Classes without a colour take the palette's in turn, or where they are ``layers`` of their own
+    (the lowest first) the shades of a ramp.
+    """
+
+    def __init__(
+        self, style: Style, identities: Iterable[Identity], layers: Sequence[str] = ()
+    ) -> None:
         self.style = style
         classes = dict.fromkeys(i.class_ for i in identities if i.class_ is not None)
         self._palette = {c: PALETTE[n % len(PALETTE)] for n, c in enumerate(classes)}
+        ordered = [layer for layer in layers if layer in classes]
+        if len(ordered) > 1:
+            self._palette = dict(zip(ordered, _shades(len(ordered)), strict=True))
 
     def paint(self, identity: Identity) -> Paint:
         rules = self._rules(identity)
@@ -63,3 +74,14 @@ class Painter:
         of_key = self.style.by_key.get(str(identity.key)) if identity.keyed else None
         of_class = self.style.by_class.get(identity.class_ or "")
         return [rule for rule in (of_key, of_class, self.style) if rule is not None]
+
+
+def _shades(count: int) -> list[str]:
+    """Colours from one end of the ramp to the other, in equal steps."""
+    ends = [[int(colour[i : i + 2], 16) for i in (1, 3, 5)] for colour in RAMP]
+    shades = []
+    for number in range(count):
+        share = number / (count - 1)
+        mixed = (round(a + share * (b - a)) for a, b in zip(*ends, strict=True))
+        shades.append("#" + "".join(f"{part:02x}" for part in mixed))
+    return shades

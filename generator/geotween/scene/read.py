@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import difflib
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -38,6 +39,10 @@ _EXAMPLES = {
 
 
 Model = TypeVar("Model", bound=BaseModel)
+
+# Where else a key may belong, and what other tools call ours.
+_PARTS = ("steps", "data", "hotspots", "map", "style", "motion", "timing")
+_SYNONYMS = {"color": "fill", "colour": "fill", "fill-opacity": "opacity", "stroke-width": "width"}
 
 _TIME: TypeAdapter[Any] = TypeAdapter(StepTime)
 _TRANSITION: TypeAdapter[Any] = TypeAdapter(Transition)
@@ -128,7 +133,7 @@ def _fault(
     name = location[-1] if location else "scene"
     kind, context = error["type"], error.get("ctx", {})
     if kind == "extra_forbidden":
-        hint = did_you_mean(str(name), _known_keys(model, inside[:-1]))
+        hint = _meant(str(name), _known_keys(model, inside[:-1]))
         return document.fault(location, f'unknown key "{name}"', hint, at_key=True)
     if kind == "missing":
         message = f'{_called(location[:-1])} needs "{name}"'
@@ -225,6 +230,21 @@ def _kind(time: object) -> str:
 
 def _kind_of(times: list[Any]) -> str:
     return _kind(next(time for time in times if time is not None))
+
+
+def _meant(word: str, here: list[str]) -> str:
+    """A hint at the key that was meant: one that is known here, or in another part of a scene."""
+    near = difflib.get_close_matches(word.lower(), here, n=1, cutoff=0.8)
+    usual = _SYNONYMS.get(word.lower())
+    if near or usual in here:
+        return f'did you mean "{near[0] if near else usual}"?'
+    parts = {name: _known_keys(SceneFile, (name,)) for name in _PARTS}
+    for cutoff in (1.0, 0.9):
+        for part, known in parts.items():
+            elsewhere = difflib.get_close_matches(word.lower(), known, n=1, cutoff=cutoff)
+            if elsewhere:
+                return f'"{elsewhere[0]}" belongs under {part}'
+    return did_you_mean(word, here)
 
 
 def _known_keys(model: Any, location: Location) -> list[str]:
