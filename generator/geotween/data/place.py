@@ -206,7 +206,7 @@ def _read(document: Document, source: Held, frame: Map, name: str) -> CRS:
         Where pyproj is missing, or knows no such system.
     """
     own = (*source.at[:-1], "crs") if source.at[-1:] == ("file",) else source.at
-    at = own if source.crs else _MAP_CRS if frame.crs else source.at
+    at = own if source.crs else _MAP_CRS if frame.crs is not None else source.at
     try:
         from geotween.data.projection import read_crs
 
