@@ -1,13 +1,14 @@
-"""Write fire.yaml, and incidents.csv for hotspots.yaml, beside this script.
+"""Write the data of fire.yaml and hotspots.yaml beside this script.
 
-Both are illustrative. The fire is grown by shortest paths over a seeded map of how readily each cell burns, with a
-west wind and a few spot fires; the incidents are seeded random points around a few places in an invented city. The
-seeds are fixed, so the files come out the same, byte for byte, every time.
+Both are illustrative. The fire is grown by shortest paths over a seeded map of how readily each
+cell burns, with a west wind and a few spot fires; the incidents are seeded random points around a
+few places in an invented city. The seeds are fixed, so the files come out the same, byte for byte,
+every time.
 """
 
 from __future__ import annotations
 
-import textwrap
+import json
 from dataclasses import dataclass
 from datetime import date, timedelta
 from itertools import pairwise
@@ -19,6 +20,7 @@ from scipy.ndimage import gaussian_filter, zoom
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from shapely import Polygon, box, union_all
+from shapely.geometry.polygon import orient
 
 Grid = NDArray[np.float64]
 HERE = Path(__file__).parent
@@ -49,76 +51,21 @@ def areas(
     return sorted(found, key=lambda p: -p.area)
 
 
-def flow(polygon: Polygon) -> str:
-    """A polygon as a YAML flow sequence: a ring, or rings when it has holes."""
+def feature(polygon: Polygon, **properties: float) -> str:
+    """A polygon as a GeoJSON feature, in one line."""
     rings = []
-    for ring in (polygon.exterior, *polygon.interiors):
-        points = [f"[{x:.2f},~{y:.2f}]" for x, y in ring.coords[:-1]]
-        rings.append("[" + ", ".join(points) + "]")
-    return rings[0] if len(rings) == 1 else "[" + ", ".join(rings) + "]"
-
-
-def wrapped(head: str, body: str, indent: int) -> str:
-    lines = textwrap.fill(
-        body,
-        width=110,
-        initial_indent=head,
-        subsequent_indent=" " * indent,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-    return lines.replace("~", " ")
+    for ring in orient(polygon).exterior, *orient(polygon).interiors:
+        points = [[round(x, 2) + 0.0, round(y, 2) + 0.0] for x, y in ring.coords]
+        rings.append(points)
+    geometry = {"type": "Polygon", "coordinates": rings}
+    return json.dumps({"type": "Feature", "properties": properties, "geometry": geometry})
 
 
 def write(name: str, lines: list[str]) -> None:
     (HERE / name).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
-# --- the wildfire ---------------------------------------------------------------------------------------------------
-
-FIRE_HEAD = """
-# yaml-language-server: $schema=scene.schema.json
-# Written by generate.py. Local plane in kilometres.
-title: Six days of a wildfire
-subtitle: "Illustrative: grown by a seeded script, not a real fire."
-description: >-
-  A burnt area grows from the west for six days. Spot fires start ahead of it and most are swallowed;
-  islands of unburnt forest open inside it and burn out later.
-source: Illustrative. Seeded script generate.py.
-credit: All shapes are invented, the lake and the town too.
-lang: en
-map:
-  width: 900
-  padding: 16
-  background: "#dfe5d0"
-  y: up
-  layers:
-    - name: forest
-      fill: "#cfdabb"
-      stroke: none
-      polygons:
-        - [[0, 0], [12, 0], [12, 8], [0, 8]]
-    - name: lake
-      fill: "#9fc3d6"
-      stroke: "#7ea9bf"
-      width: 0.8
-      polygons:
-        - [[6.8, 6.6], [7.6, 6.3], [8.4, 6.4], [9.1, 6.8], [9.2, 7.2], [8.3, 7.4], [7.3, 7.2]]
-    - name: town
-      fill: "#b9b2a6"
-      stroke: "#8f887c"
-      width: 0.8
-      polygons:
-        - [[9.6, 1], [10.2, 0.8], [10.9, 1], [11.1, 1.6], [10.7, 2.1], [10, 2], [9.5, 1.6]]
-style:
-  fill: "#c1440e"
-  stroke: "#7c2606"
-  width: 1
-  opacity: 0.85
-motion: {correspondence: intersects, easing: linear}
-timing: {transition: 2, hold: 0.6, loop: true}
-"""
-
+DAYS = 6
 FIRE_SHAPE, FIRE_CELL = (80, 120), 0.1  # rows, columns, kilometres
 LAKE = [(6.8, 6.6), (7.6, 6.3), (8.4, 6.4), (9.1, 6.8), (9.2, 7.2), (8.3, 7.4), (7.3, 7.2)]
 TOWN = [(9.6, 1.0), (10.2, 0.8), (10.9, 1.0), (11.1, 1.6), (10.7, 2.1), (10.0, 2.0), (9.5, 1.6)]
@@ -154,8 +101,11 @@ def arrival() -> Grid:
                 slow[r, c] = 1e3
     index = np.arange(rows * columns).reshape(FIRE_SHAPE)
     starts, ends, days = [], [], []
-    for dr, dc in [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (1, 2), (-1, 2), (1, -2),
-                   (-1, -2), (2, 1), (2, -1), (-2, 1), (-2, -1)]:  # fmt: skip
+    steps = [
+        (-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1),
+        (1, 2), (-1, 2), (1, -2), (-1, -2), (2, 1), (2, -1), (-2, 1), (-2, -1),
+    ]  # fmt: skip
+    for dr, dc in steps:
         here = (slice(max(0, -dr), rows - max(0, dr)), slice(max(0, -dc), columns - max(0, dc)))
         there = (slice(max(0, dr), rows + min(0, dr)), slice(max(0, dc), columns + min(0, dc)))
         length = FIRE_CELL * np.hypot(dr, dc)
@@ -178,17 +128,9 @@ def arrival() -> Grid:
 
 def fire() -> None:
     day = arrival()
-    captions = [
-        "The fire starts in the west, and a west wind drives it.",
-        "Sparks carry ahead of the front and light a spot fire.",
-        "The spot fire grows, and a second one is lit to the north-east.",
-        "The front swallows the first spot fire. Behind it lies an island of unburnt forest.",
-        "The second spot fire is swallowed and the island burns out. A third fire starts near the town.",
-        "The fire lies along the lake, with two more islands inside it. The third fire still burns apart.",
-    ]
-    out = [FIRE_HEAD.strip("\n"), "steps:"]
+    rows = []
     before: list[Polygon] = []
-    for n, caption in enumerate(captions, 1):
+    for n in range(1, DAYS + 1):
         field = np.clip(n - gaussian_filter(np.minimum(day, 9), 1.0), -2, 2)
         polygons = areas(field, FIRE_CELL, 0.12, 0.06, 0.035)
         # An island of unburnt forest is mapped only once the front has passed it for a day.
@@ -199,18 +141,13 @@ def fire() -> None:
             )
             for p in polygons
         ]
-        out += [
-            f'  - label: "Day {n}"',
-            f"    time: {n}",
-            f"    caption: {caption}",
-            "    polygons:",
-        ]
-        out += [wrapped("      - ", flow(p), 8) for p in polygons]
+        rows += [feature(p, day=n) for p in polygons]
         before = polygons
-    write("fire.yaml", out)
+    write(
+        "fire.geojson",
+        ['{"type": "FeatureCollection", "features": [', ",\n".join(rows), "]}"],
+    )
 
-
-# --- the incidents --------------------------------------------------------------------------------------------------
 
 MONTHS = [date(2024, month, 1) for month in range(1, 8)]  # the last one is where June ends
 CITY = (0.5, 0.5), (9.5, 6.5)  # south-west and north-east, in kilometres
@@ -219,7 +156,7 @@ SCATTERED = 40  # incidents a month, anywhere in it
 
 @dataclass(frozen=True)
 class Cluster:
-    """Where incidents gather: for each month its middle and their number, and how they lie around it."""
+    """Where incidents gather: each month's middle and number, and how they lie around it."""
 
     x: list[float]
     y: list[float]
@@ -272,7 +209,7 @@ CLUSTERS = {
 
 
 def around(cluster: Cluster, month: int, rng: np.random.Generator) -> Grid:
-    """A month's incidents (n, 2) of a cluster: spread around its middle, or evenly along its ring."""
+    """A month's incidents (n, 2) of a cluster, around its middle or along its ring."""
     count, reach = cluster.count[month], (np.pi - cluster.gap[month]) / 2
     # A ring's go to its eastern and its western half in turn.
     angle = np.linspace(-reach, reach, count) + np.pi * (np.arange(count) % 2)
