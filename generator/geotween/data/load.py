@@ -11,6 +11,7 @@ from typing import Any
 from geotween.data.checks import doubts
 from geotween.data.frame import check_size, pixels_per_unit
 from geotween.data.identity import TwoClassesError, merge_keys
+from geotween.data.nodes import noded_features
 from geotween.data.place import crs_of_all, place
 from geotween.data.polygons import (
     Feature,
@@ -139,23 +140,27 @@ def _scene(
         features.append(valid)
         problems += found
     count = len(sources) - len(static)
-    placed = place(document, model.map, sources, systems, features, owners)
+    features = noded_features(features, systems)
+    placed = place(document, model.map, sources, systems, features, owners, len(members))
     problems += placed.problems
     features = []
     for shapes, owner in zip(placed.features, owners, strict=True):
-        kept, found = mended(shapes, step=named[owner]) if placed.projected else (shapes, [])
+        kept, found = mended(shapes, step=named[owner])
         features.append(kept)
         problems += found
     steps, found = _merged(document, members, features[:count])
     problems += found
     if not any(steps):
-        hint = "what has no area is left out" if problems else ""
+        hint = "; ".join(dict.fromkeys(p.message for p in problems if p.severity != "note"))
         raise SceneError([document.fault(at, "no step has a polygon", hint, at_key=True)])
     if model.map.fit == "each":
         steps = _in_one_frame(steps)
     box = bounds([f for part in [*steps, *features[count:]] for f in part])
     check_size(document, at, model.map, box)
     tidied = tidy(steps, features[count:], labels, model.map, pixels_per_unit(model.map, box))
+    if not any(tidied.steps):
+        message = "no step has a polygon as large as this"
+        raise SceneError([document.fault(("map", "min_area"), message)])
     sets = [polygon_set(step) for step in tidied.steps]
     return Scene(
         document.path.stem,

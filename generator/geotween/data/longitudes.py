@@ -23,6 +23,10 @@ GRID = 2.0**-42
 # from radians miss it by rounding.
 NEAR = 1e-9
 
+# An edge (degrees of longitude) longer than this crosses the antimeridian, where another turn is
+# counted from; a shorter one is as wide as it is written, such as a box from -100 to 100.
+JUMP = 270.0
+
 # The meridians (degrees) where data are cut, as data are that run from -180 or from 0.
 SEAMS = (180.0, 360.0)
 
@@ -86,11 +90,11 @@ def turned(polygons: NDArray[np.object_], turns: NDArray[np.float64]) -> NDArray
 def unwrapped(parts: Parts) -> tuple[Parts, int]:
     """Polygons with continuous longitudes, and how many polygons had others.
 
-    An edge of more than half a turn goes the short way round, whatever turn its ends are written
-    in. A ring that closes only after a turn encloses the pole of its own hemisphere: it is led
-    along a meridian to that pole and back, and spans 360°. An edge of exactly one turn is a real
-    one at a pole, or where the ring is valid as it stands (a band around the globe); otherwise it
-    crosses the antimeridian at a doubled point.
+    An edge longer than ``JUMP`` goes the short way round, whatever turn its ends are written in. A
+    ring that closes only after a turn encloses the pole of its own hemisphere: it is led along a
+    meridian to that pole and back, and spans 360°. An edge of exactly one turn is a real one at a
+    pole, or where the ring is valid as it stands (a band around the globe); otherwise it crosses
+    the antimeridian at a doubled point.
 
     Notes
     -----
@@ -99,7 +103,7 @@ def unwrapped(parts: Parts) -> tuple[Parts, int]:
     """
     rings, ring_parts = shapely.get_rings(parts.polygons, return_index=True)
     points, index = shapely.get_coordinates(rings, return_index=True)
-    far = (np.abs(np.diff(points[:, 0])) > TURN / 2) & (index[1:] == index[:-1])
+    far = (np.abs(np.diff(points[:, 0])) > JUMP) & (index[1:] == index[:-1])
     which = np.unique(ring_parts[index[1:][far]])
     fixed = [_unwrapped(polygon) for polygon in parts.polygons[which]]
     changed = sum(new is not old for new, old in zip(fixed, parts.polygons[which], strict=True))
@@ -124,7 +128,7 @@ def _unwrapped_ring(ring: NDArray[np.float64]) -> NDArray[np.float64]:
     """A closed ring (k, 2) with continuous longitudes: the same object if it had them already."""
     points = np.column_stack([on_grid(ring[:-1, 0]), ring[:-1, 1]])
     steps = np.roll(points[:, 0], -1) - points[:, 0]
-    turns = np.where(np.abs(steps) > TURN / 2, -np.rint(steps / TURN), 0.0)
+    turns = np.where(np.abs(steps) > JUMP, -np.rint(steps / TURN), 0.0)
     whole = np.abs(steps) == TURN
     at_pole = (np.abs(ring[:-1, 1]) == 90) & (ring[:-1, 1] == ring[1:, 1])
     turns[whole & at_pole] = 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,7 +38,6 @@ class Placed:
     features: list[list[Feature]]
     words: str
     metres: float | None = None
-    projected: bool = False
     problems: tuple[Problem, ...] = ()
 
 
@@ -55,10 +54,12 @@ def crs_of_all(document: Document, frame: Map, sources: Sequence[Held]) -> list[
         Where it is unknown and needed, or cannot be the one that is named.
     """
     names = [source.crs or frame.crs for source in sources]
-    if frame.projection == "none" and len({name for name in names if name}) < 2:
+    others = any(s.lonlat and name is None for s, name in zip(sources, names, strict=True))
+    known = {name for name in names if name is not None}
+    if frame.projection == "none" and len(known) + bool(known and others) < 2:
         return [None] * len(sources)  # without a need for pyproj
     bare = [i for i, s in enumerate(sources) if names[i] is None and s.lonlat and s.features]
-    if bare and frame.projection != "none":
+    if bare and (frame.projection != "none" or any(names)):
         _check_bare(document, [sources[i] for i in bare])
         if _lonlat(_bounds([sources[bare[0]]])):
             for i in bare:
@@ -67,12 +68,12 @@ def crs_of_all(document: Document, frame: Map, sources: Sequence[Held]) -> list[
     for i, source in enumerate(sources):
         if names[i] is None and not source.name:
             names[i] = first
-    known: dict[str, CRS] = {}
+    read: dict[str, CRS] = {}
     found = []
     for source, name in zip(sources, names, strict=True):
-        if name is not None and name not in known:
-            known[name] = _read(document, source, frame, name)
-        found.append(known[name] if name is not None else None)
+        if name is not None and name not in read:
+            read[name] = _read(document, source, frame, name)
+        found.append(read[name] if name is not None else None)
     _check(document, frame, sources, found)
     return found
 
@@ -84,11 +85,13 @@ def place(
     systems: Sequence[CRS | None],
     features: Sequence[list[Feature]],
     owners: Sequence[int],
+    steps: int,
 ) -> Placed:
     """The features of several sources in the plane of the map.
 
-    ``owners`` tell which step or static layer a source belongs to: with ``fit: each`` every one
-    gets a projection of its own, as each is drawn in a frame of its own.
+    ``owners`` tell which step (the first ``steps`` of them) or static layer a source belongs to.
+    With ``fit: each`` every step gets a projection of its own, as it is drawn in a frame of its
+    own; static layers get that of the first step with polygons, whose frame is the map's.
 
     Raises
     ------
@@ -98,84 +101,109 @@ def place(
     first = next((system for system in systems if system is not None), None)
     if first is None:
         return Placed(list(features), "")
-    shapes, problems = _in_one_system(sources, systems, features, first)
-    if frame.projection == "none" or (frame.projection == "auto" and not first.is_geographic):
-        known = next((s.words for s in sources if s.words), "")
-        words = "" if frame.projection == "none" else known or f"{_called(first)}, as the data are"
-        return Placed(_with(features, shapes), words, _metres(first), problems=tuple(problems))
-    from geotween.data.reproject import project
-
-    apart = frame.fit == "each" and frame.projection == "auto"
+    shapes = [geometries_of(of_one) for of_one in features]
+    filled = [i for i, of_one in enumerate(shapes) if len(of_one)]
+    apart = frame.fit == "each" and frame.projection == "auto" and first.is_geographic
+    leader = min((owners[i] for i in filled if owners[i] < steps), default=0)
     groups: dict[int, list[int]] = {}
-    for i, owner in enumerate(owners):
-        groups.setdefault(owner if apart else 0, []).append(i)
-    chosen: dict[str, Projection] = {}
-    for group in groups.values():
-        together = np.concatenate([shapes[i] for i in group])
-        if not len(together):
-            continue
-        projection = _chosen(document, frame, together, first)
-        projected, met = project(together, first, projection)
-        starts = np.cumsum([len(shapes[i]) for i in group])[:-1]
-        for i, part in zip(group, np.split(projected, starts), strict=True):
-            shapes[i] = part
-        chosen[projection.words] = projection
-        problems += met
-    if frame.y == "down":
+    for i in filled:
+        own = apart and owners[i] < steps
+        groups.setdefault(owners[i] if own else leader if apart else 0, []).append(i)
+    problems = _told_apart(sources, systems, first)
+    words, metres = [], set()
+    for owner, group in groups.items():
+        deciding = [i for i in group if not apart or owners[i] == owner]
+        chosen = _projection(document, frame, sources, systems, shapes, deciding, first)
+        for i, placed in _onto(chosen, systems, shapes, group, problems):
+            shapes[i] = placed
+        words.append("" if frame.projection == "none" else chosen.words)
+        metres.add(_metres(chosen.crs))
+    if frame.y == "down" and frame.projection != "none" and first.is_geographic:
         message = '"y: down" turns projected data upside down'
         problems.append(Problem("upside down", "warning", message, hint="leave it out"))
-    units = {_metres(projection.crs) for projection in chosen.values()}
-    metres = units.pop() if len(units) == 1 and not apart else None
-    words = "; ".join(chosen)
-    return Placed(_with(features, shapes), words, metres, projected=True, problems=tuple(problems))
+    return Placed(
+        [with_geometries(*of_one) for of_one in zip(features, shapes, strict=True)],
+        "; ".join(dict.fromkeys(filter(None, words))),
+        metres.pop() if len(metres) == 1 and not apart else None,
+        tuple(problems),
+    )
 
 
-def _in_one_system(
+def _projection(
+    document: Document,
+    frame: Map,
     sources: Sequence[Held],
     systems: Sequence[CRS | None],
-    features: Sequence[list[Feature]],
+    shapes: Sequence[Shapes],
+    deciding: Sequence[int],
     first: CRS,
-) -> tuple[list[Shapes], list[Problem]]:
-    """The geometries of each source in the first one's system."""
+) -> Projection:
+    """The projection of a map: the one named, that of the first source, or one that fits."""
+    from geotween.data.projection import fitting, named
     from geotween.data.reproject import reproject
 
-    shapes = [geometries_of(of_one) for of_one in features]
-    problems = []
-    for i, (source, system) in enumerate(zip(sources, systems, strict=True)):
-        if system is not None and not system.equals(first, ignore_axis_order=True):
-            shapes[i] = reproject(shapes[i], system, first)
-            message = f"{source.name} was reprojected to {_called(first)}, as the first source is"
-            problems.append(Problem("reprojected", "note", message))
-    return shapes, problems
-
-
-def _chosen(document: Document, frame: Map, shapes: Shapes, system: CRS) -> Projection:
-    """The projection that the scene names, or that fits some shapes.
-
-    Raises
-    ------
-    SceneError
-        For one that does not exist.
-    """
-    from geotween.data.projection import fitting, named
-
+    together = np.concatenate([reproject(shapes[i], systems[i] or first, first) for i in deciding])
+    if frame.projection == "none" or (frame.projection == "auto" and not first.is_geographic):
+        own = named(first.to_wkt(), together, first)
+        words = next((s.words for s in sources if s.words), "")
+        return replace(own, crs=first, words=words or f"{_called(first)}, as the data are")
     if frame.projection == "auto":
-        return fitting(shapes, system)
+        return fitting(together, first)
     try:
-        return named(frame.projection, shapes, system)
+        return named(frame.projection, together, first)
     except ValueError as error:
         hint = "auto, none, an EPSG code such as EPSG:3035, or a PROJ string"
         raise SceneError([document.fault(_PROJECTION, f'"projection": {error}', hint)]) from None
+
+
+def _onto(
+    chosen: Projection,
+    systems: Sequence[CRS | None],
+    shapes: Sequence[Shapes],
+    group: Sequence[int],
+    problems: list[Problem],
+) -> list[tuple[int, Shapes]]:
+    """The geometries of some sources on a map, those of one system together."""
+    from geotween.data.reproject import project
+
+    of_system: dict[str, list[int]] = {}
+    for i in group:
+        system = systems[i]
+        of_system.setdefault(system.to_wkt() if system is not None else "", []).append(i)
+    found: list[tuple[int, Shapes]] = []
+    for members in of_system.values():
+        system = systems[members[0]]
+        together = np.concatenate([shapes[i] for i in members])
+        if system is not None and not system.equals(chosen.crs, ignore_axis_order=True):
+            together, met = project(together, system, chosen)
+            problems += met
+        starts = np.cumsum([len(shapes[i]) for i in members])[:-1]
+        found += zip(members, np.split(together, starts), strict=True)
+    return found
+
+
+def _told_apart(
+    sources: Sequence[Held], systems: Sequence[CRS | None], first: CRS
+) -> list[Problem]:
+    """A note for each source in another system than the first."""
+    plane = next((source.words for source in sources if source.words), _called(first))
+    return [
+        Problem(
+            "reprojected", "note",
+            f"{source.name or 'what is written in the scene'} was reprojected to {plane}, "
+            "as the first source is",
+        )
+        for source, system in zip(sources, systems, strict=True)
+        if source.features
+        and system is not None
+        and not system.equals(first, ignore_axis_order=True)
+    ]  # fmt: skip
 
 
 def _metres(system: CRS) -> float | None:
     """How long a unit of a system is; None for degrees."""
     axis = system.axis_info[0]
     return float(axis.unit_conversion_factor) if system.is_projected else None
-
-
-def _with(features: Sequence[list[Feature]], shapes: Sequence[Shapes]) -> list[list[Feature]]:
-    return [with_geometries(*of_one) for of_one in zip(features, shapes, strict=True)]
 
 
 def _check_bare(document: Document, sources: Sequence[Held]) -> None:

@@ -206,7 +206,7 @@ def _without_slivers(geometry: Polygon | MultiPolygon) -> MultiPolygon:
 def _crossed(count: int) -> list[Problem]:
     if not count:
         return []
-    message = "longitudes that jump by more than half a turn were led the short way round"
+    message = "longitudes that jump from one turn to another were led the short way round"
     return [Problem("antimeridian", "note", message, measure=float(count), unit="polygons")]
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
+from geotween.data.longitudes import JUMP
 from geotween.data.polygons import Feature
 from geotween.data.problems import Problem
 from geotween.data.repair import repair
@@ -47,10 +48,10 @@ def mended(features: Sequence[Feature], *, step: str) -> tuple[list[Feature], li
 
 
 def _jumps(features: Sequence[Feature]) -> np.ndarray:
-    """Which features have an edge of more than half a turn of longitude."""
+    """Which features have an edge of more than ``JUMP`` degrees of longitude."""
     geometries = np.array([f.geometry for f in features], dtype=object)
     points, owner = shapely.get_coordinates(geometries, return_index=True)
-    far = (np.abs(np.diff(points[:, 0])) > 180) & (owner[1:] == owner[:-1])
+    far = (np.abs(np.diff(points[:, 0])) > JUMP) & (owner[1:] == owner[:-1])
     found = np.zeros(len(features), dtype=bool)
     found[owner[1:][far]] = True
     return found

@@ -86,8 +86,8 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
     """The keyframes of a scene whose transitions have been planned."""
     model = scene.model
     page = fit_page(model.map, [s.regions for s in scene.steps] + [s for _, s in scene.layers])
-    identities = (i for step in scene.steps for i in step.regions.identities)
-    painter = Painter(model.style, identities, scene.layer_order)
+    everyone = (i for step in scene.steps for i in step.regions.identities)
+    painter = Painter(model.style, everyone, scene.layer_order)
     rests = [resting(step.regions, page) for step in scene.steps]
     spans = []
     for span in timeline(scene):
