@@ -190,7 +190,7 @@ lake.geojson:2:15: not JSON: Expecting value
 lake.geojson:1:1: not JSON: Expecting value
      1 | <!DOCTYPE html>
        | ^
-       = expected GeoJSON, the one format that is read from files
+       = expected GeoJSON or TopoJSON: the suffix says which format a file has
 """,
             id="HTML",
         ),

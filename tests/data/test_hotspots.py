@@ -318,7 +318,7 @@ def test_too_small_a_bandwidth_names_the_smallest_that_works(
     ([(0, 0), (1, 1)], {"levels": [0.0]}, "a level must be between 0 and 1, not 0"),
     ([(0, 0), (1, 1)], {"levels": [np.nan]}, "a level must be between 0 and 1, not nan"),
     ([(0, 0), (1, 1)], {"levels": [0.5, 0.5]}, "a level is given twice"),
-    ([(0, 0), (1, 1)], {"levels": [1e-7]}, "1e-07 is too low: it must be at least 4e-06"),
+    ([(0, 0), (1, 1)], {"levels": [1e-7]}, "a level is too low: 1e-07 of the highest density; it must be 4e-06 of it"),
     ([(0, 0), (1, 1)], {"levels": [-3], "relative": False}, "a level must be a positive number"),
 ])  # fmt: skip
 def test_what_cannot_be_contoured(points: Any, options: dict[str, Any], message: str) -> None:

@@ -150,10 +150,10 @@ def test_object_is_chosen_by_name() -> None:
     assert to_geojson(two, "squares") == to_geojson(SQUARES)
     (feature,) = to_geojson(two, "left")["features"]
     assert feature["geometry"]["coordinates"] == [LEFT]
-    with pytest.raises(TopologyError, match="2 objects, and none is named") as error:
+    with pytest.raises(TopologyError, match="several layers: name one with layer:") as error:
         to_geojson(two)
-    assert (error.value.location, error.value.hint) == (("objects",), "name one of squares, left")
-    with pytest.raises(TopologyError, match='no object "square"') as error:
+    assert (error.value.location, error.value.hint) == (("objects",), "there are squares, left")
+    with pytest.raises(TopologyError, match='no layer "square"') as error:
         to_geojson(two, "square")
     assert (error.value.location, error.value.hint) == (("objects",), 'did you mean "squares"?')
     with pytest.raises(TopologyError) as error:

@@ -339,7 +339,7 @@ def test_file_that_is_missing(tmp_path: Path) -> None:
 
 # JSON
 
-GEOJSON = "expected GeoJSON, the one format that is read from files"
+GEOJSON = "expected GeoJSON or TopoJSON: the suffix says which format a file has"
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import datetime
+import decimal
 import json
+import re
 import sqlite3
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
@@ -14,6 +17,16 @@ from geotween.scene.values import UNWRITABLE
 
 _NUMBER = '"the row\'s number"'  # a name that no column of a file has
 NOTHING: Mapping[str, Any] = MappingProxyType({})
+
+# What an expression may do: read its columns, and call functions that always say the same.
+_ALLOWED = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_FUNCTION)
+_UNSTEADY = ("random", "randomblob", "load_extension")
+# SQLite's instructions, counted rather than seconds, so that every machine agrees.
+_CHUNK = 10_000
+_LONGEST = 10**8  # bytes of a value
+_MOST_STEPS, _STEPS_PER_ROW = 20_000_000, 2_000
+
+_QUOTED = re.compile(r"'(?:[^']|'')*'" r'|"((?:[^"]|"")*)"')
 
 
 @dataclass(frozen=True)
@@ -77,34 +90,101 @@ def names_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 def select(rows: Sequence[Mapping[str, Any]], where: str) -> list[int]:
     """The indices of the rows for which an SQL expression holds, evaluated by SQLite.
 
+    Dates are ISO texts to it. A word in double quotes that is no column is a text, as SQLite has
+    it: see ``unknown_words``.
+
     Raises
     ------
     SelectionError
-        Where it is no expression, or names a column that is not there.
+        Where it is no expression, names a column that is not there, or would run too long.
     """
-    names = list({name.lower(): name for name in reversed(names_of(rows))}.values())[::-1]
-    if not names:
+    every = names_of(rows)
+    if not every:
         raise SelectionError("there are no columns")
+    names = list({name.lower(): name for name in reversed(_mentioned(every, where))}.values())[::-1]
     places = {name: f"column{number}" for number, name in enumerate(names)}
-    shown = ", ".join(f"{place} AS {_quoted(name)}" for name, place in places.items())
-    with closing(sqlite3.connect(":memory:")) as base:
-        base.execute(f"CREATE TABLE held (number INTEGER, {', '.join(places.values())})")
-        base.executemany(
-            f"INSERT INTO held VALUES ({', '.join('?' * (len(names) + 1))})",
-            ([number, *(_plain(row.get(n)) for n in names)] for number, row in enumerate(rows)),
-        )
-        try:
-            chosen = base.execute(
-                f"SELECT {_NUMBER} FROM (SELECT number AS {_NUMBER}, {shown} FROM held) "
+    shown = [f"{place} AS {_quoted(name)}" for name, place in places.items()]
+    try:
+        with closing(sqlite3.connect(":memory:")) as base:
+            base.execute(f"CREATE TABLE held ({', '.join(['number INTEGER', *places.values()])})")
+            base.executemany(
+                f"INSERT INTO held VALUES ({', '.join('?' * (len(names) + 1))})",
+                ([number, *(_plain(row.get(n)) for n in names)] for number, row in enumerate(rows)),
+            )
+            _confine(base, len(rows))
+            found = base.execute(
+                f"SELECT {_NUMBER} FROM "
+                f"(SELECT {', '.join([f'number AS {_NUMBER}', *shown])} FROM held) "
                 f"WHERE ({where}\n) ORDER BY {_NUMBER}"
-            ).fetchall()
-        except (sqlite3.Error, sqlite3.Warning) as error:
-            raise SelectionError(str(error)) from None
-    return [number for (number,) in chosen]
+            )
+            chosen = [number for (number,) in found]
+    except (sqlite3.Error, sqlite3.Warning, ValueError) as error:
+        reason = "it takes too long" if str(error) == "interrupted" else str(error)
+        raise SelectionError(reason + _advice(reason, where, every)) from None
+    if not all(isinstance(number, int) and 0 <= number < len(rows) for number in chosen):
+        raise SelectionError("it selects what is no row")
+    return chosen
+
+
+def unknown_words(where: str, names: Sequence[str]) -> list[str]:
+    """The words of an expression in double quotes that are no columns, but texts to SQLite."""
+    known = {name.lower() for name in names}
+    words = [found[1].replace('""', '"') for found in _QUOTED.finditer(where) if found[1]]
+    return [word for word in dict.fromkeys(words) if word.lower() not in known]
+
+
+def _mentioned(names: Sequence[str], where: str) -> list[str]:
+    """The columns whose name occurs in an expression; SQLite takes no more than 2,000."""
+    text = where.casefold()
+    return [n for n in names if n.casefold() in text or _quoted(n).casefold() in text]
+
+
+def _confine(base: sqlite3.Connection, count: int) -> None:
+    """Deny an expression over some rows all but reading, and end it where it runs too long."""
+    left = (_MOST_STEPS + _STEPS_PER_ROW * count) // _CHUNK
+
+    def authorize(action: int, _: str | None, name: str | None, *__: str | None) -> int:
+        called = action == sqlite3.SQLITE_FUNCTION and (name or "").lower() in _UNSTEADY
+        return sqlite3.SQLITE_OK if action in _ALLOWED and not called else sqlite3.SQLITE_DENY
+
+    def spent() -> bool:
+        nonlocal left
+        left -= 1
+        return left < 0
+
+    base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
+    base.set_authorizer(authorize)
+    base.set_progress_handler(spent, _CHUNK)
+
+
+def _advice(reason: str, where: str, names: Sequence[str]) -> str:
+    """How to mend an expression that lacks quotes."""
+    missing = re.match(r"no such column: (\w+)$", reason)
+    if not missing and "syntax error" not in reason:
+        return ""
+    bare = _QUOTED.sub("''", where).casefold()
+    odd = [n for n in names if not n.isidentifier() and any(map(str.isalpha, n))]
+    unquoted = [n for n in odd if n.casefold() in bare]
+    keywords = [n for n in names if reason.lower() == f'near "{n.lower()}": syntax error']
+    for name in unquoted + keywords:
+        return f"; this name needs double quotes: {_quoted(name)}"
+    return f"; a text needs single quotes: '{missing[1]}'" if missing else ""
 
 
 def _plain(value: Any) -> Any:
-    return json.dumps(value) if isinstance(value, dict | list) else value
+    """A value as SQLite takes it."""
+    if isinstance(value, int):
+        if -(2**63) <= value < 2**63:
+            return value
+        return float(value) if abs(value) < 2**1023 else str(value)
+    if value is None or isinstance(value, float | bytes):
+        return value
+    if isinstance(value, decimal.Decimal):
+        return float(value)
+    if isinstance(value, datetime.date | datetime.time):
+        return value.isoformat()
+    text = json.dumps(value, default=str) if isinstance(value, dict | list) else str(value)
+    return text.encode(errors="replace").decode()
 
 
 def _quoted(name: str) -> str:

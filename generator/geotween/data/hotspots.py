@@ -124,8 +124,10 @@ def hotspots(
     square = grid.cell**2
     thresholds = shares * (peak if relative else square)
     if thresholds[0] < FAINTEST * peak:
-        least = FAINTEST * (1 if relative else peak / square)
-        raise ValueError(f"a level of {shares[0]:g} is too low: it must be at least {least:.3g}")
+        share = thresholds[0] / peak
+        raise ValueError(
+            f"a level is too low: {share:.1g} of the highest density; it must be {FAINTEST:g} of it"
+        )
     polygons = tuple(_above(d, thresholds, grid) for d in densities)
     return Hotspots(
         polygons, tuple((thresholds / square).tolist()), h, grid.cell, float(peak / square)

@@ -1,27 +1,28 @@
-"""Incidents: points with times out of a table, as steps of hotspots."""
+"""Incidents: points with times, as steps of hotspots."""
 
 from __future__ import annotations
 
-import csv
 import datetime
-import io
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geotween.data.columns import SelectionError, select
-from geotween.data.parse import LARGEST_COORDINATE
+from geotween.data.points import (
+    PLACE,
+    Incidents,
+    UnusableError,
+    coordinates,
+    read_incidents,
+)
 from geotween.data.polygons import Feature
 from geotween.data.problems import Problem
 from geotween.data.series import MOST_STEPS, Member
-from geotween.data.sources import Held, SourceReader, there_are
-from geotween.data.times import alike, periods_between, start_of, time_of, words_of
-from geotween.scene.document import Location, read_text
+from geotween.data.sources import Held, SourceReader
+from geotween.data.times import periods_between, start_of, words_of
 from geotween.scene.errors import SceneError
 from geotween.scene.model import Hotspots
 from geotween.scene.values import Time
@@ -29,28 +30,12 @@ from geotween.scene.values import Time
 if TYPE_CHECKING:
     from geotween.data.hotspots import Hotspots as Dense
 
-PLACE: Location = ("hotspots",)
 SHARE = "20%"  # of the highest density: what a hotspot is where the scene does not say
+NEARBY = 0.01  # degrees, a kilometre: the cells around points that a projection has to fit
 GEOGRAPHIC = "OGC:CRS84"
 SQUARE_KILOMETRE = 1e6  # m²: densities on the globe are for one, as people count them
-
-
-class UnusableError(Exception):
-    """Something about the points that the author has to mend: the word that names it, and why."""
-
-    def __init__(self, word: str, message: str, hint: str = "") -> None:
-        super().__init__(message)
-        self.word = word
-        self.message = message
-        self.hint = hint
-
-
-@dataclass(frozen=True, eq=False)
-class Incidents:
-    """Points (n, 2) as they are written, and the time of each."""
-
-    points: NDArray[np.float64]
-    times: list[Time]
+FARTHEST_EAST = 360  # degrees: some count longitudes from 0 up to here
+_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")  # startLat, LAT_1 and gps.lat have a word "lat"
 
 
 def hotspot_steps(reader: SourceReader, wanted: Hotspots) -> list[Member]:
@@ -59,8 +44,7 @@ def hotspot_steps(reader: SourceReader, wanted: Hotspots) -> list[Member]:
     if path is None:
         return []
     try:
-        incidents = _incidents(reader, path, wanted)
-        return _steps(incidents, wanted)
+        return _steps(read_incidents(reader, path, wanted), wanted)
     except UnusableError as error:
         place = (*PLACE, error.word) if error.word else PLACE
         reader.faults.append(reader.document.fault(place, error.message, error.hint))
@@ -72,6 +56,7 @@ def hotspot_steps(reader: SourceReader, wanted: Hotspots) -> list[Member]:
 def _steps(incidents: Incidents, wanted: Hotspots) -> list[Member]:
     from geotween.data.hotspots import hotspots
 
+    doubts = _doubts(incidents.points, wanted)
     starts, number = _periods(incidents.times, wanted.period)
     points, crs, words = _in_plane(incidents.points, wanted)
     thresholds = wanted.levels or (wanted.threshold or SHARE,)
@@ -89,7 +74,8 @@ def _steps(incidents: Incidents, wanted: Hotspots) -> list[Member]:
         raise UnusableError("", str(error)) from None
     names = [str(t) if isinstance(t, str) else f"{t:.15g}" for t in thresholds]
     ordered = [names[i] for i in np.argsort(levels, kind="stable")]
-    told: tuple[Problem, ...] = (_told(dense, ordered, words),)
+    too_high = _too_high(dense, ordered, wanted, words)
+    told = (*incidents.problems, *doubts, _told(dense, ordered, words), *too_high)
     members = []
     for start, polygons in zip(starts, dense.polygons, strict=True):
         features = [
@@ -107,17 +93,44 @@ def _steps(incidents: Incidents, wanted: Hotspots) -> list[Member]:
 
 def _told(dense: Dense, names: Sequence[str], words: str) -> Problem:
     """What was chosen, for those who want to name it: in metres and per km² on the globe."""
-    per, unit, area = (SQUARE_KILOMETRE, "m", "km²") if words else (1.0, "map units", "square unit")
+    unit = "m" if words else "map units"
     message = (
         f"hotspots: bandwidth {dense.bandwidth:.4g} {unit}, "
-        f"highest density {dense.peak * per:.4g} points per {area} and step"
+        f"highest density {_peak(dense, words)} and step"
     )
+    per = SQUARE_KILOMETRE if words else 1.0
     shares = [
         f"{name} is {threshold * per:.4g}"
         for name, threshold in zip(names, dense.thresholds, strict=True)
         if name.endswith("%")
     ]
     return Problem("hotspots", "note", "; ".join([message, *shares]))
+
+
+def _peak(dense: Dense, words: str) -> str:
+    peak, area = (dense.peak * SQUARE_KILOMETRE, "km²") if words else (dense.peak, "square unit")
+    return f"{peak:.4g} points per {area}"
+
+
+def _too_high(dense: Dense, names: Sequence[str], wanted: Hotspots, words: str) -> list[Problem]:
+    """Levels that no step has a place above.
+
+    Raises
+    ------
+    UnusableError
+        Where all are.
+    """
+    empty = [all(shape.is_empty for shape in level) for level in zip(*dense.polygons, strict=True)]
+    lost = [name for name, none in zip(names, empty, strict=True) if none]
+    if not lost:
+        return []
+    above, most = ", ".join(lost), _peak(dense, words)
+    message = f"no step has a place above {above}: the highest density is {most}"
+    shares = [f"{name}%" for name in lost if not name.endswith("%") and float(name) < 100]
+    hint = f"a share of it is written {shares[0]}" if shares else ""
+    if all(empty):
+        raise UnusableError("levels" if wanted.levels else "threshold", message, hint)
+    return [Problem("unused level", "warning", message, hint=hint)]
 
 
 def _level(threshold: float | str, *, per: float) -> float:
@@ -132,19 +145,66 @@ def _periods(times: list[Time], period: str | None) -> tuple[list[Time], NDArray
     if period is None:
         starts: list[Time] = sorted(set(times))
         of_each: Sequence[Time] = times
+        message = f"the times make {len(starts)} steps, more than {MOST_STEPS}"
     else:
         dates = [time for time in times if isinstance(time, datetime.date)]
         if len(dates) < len(times):
             message = f'"period": {period} needs dates, and the times are numbers'
             raise UnusableError("period", message, "leave it out: each number is a step")
-        ordered = sorted(dates)
-        starts = [*periods_between(ordered[0], ordered[-1], period)]
-        of_each = [start_of(date, period) for date in dates]
+        of_each = dates = [start_of(date, period) for date in _one_clock(dates, period)]
+        first, last = min(dates), max(dates)
+        starts = [*periods_between(first, last, period, MOST_STEPS)]
+        ends = f"from {words_of(first, period)} to {words_of(last, period)}"
+        message = f"more than {MOST_STEPS} {period}s lie {ends}"
     if len(starts) > MOST_STEPS:
-        message = f"the times make {len(starts)} steps, more than {MOST_STEPS}"
         raise UnusableError("time", message, "name a longer period: month or year")
     places = {start: number for number, start in enumerate(starts)}
     return starts, np.array([places[time] for time in of_each], dtype=np.intp)
+
+
+def _one_clock(dates: list[datetime.date], period: str) -> list[datetime.date]:
+    """Dates whose hours begin at once: in the zone of the first, whatever their own."""
+    zones = [date.tzinfo for date in dates if isinstance(date, datetime.datetime)]
+    if period != "hour" or not zones or zones[0] is None:
+        return dates
+    try:
+        return [d.astimezone(zones[0]) for d in dates if isinstance(d, datetime.datetime)]
+    except OverflowError:
+        raise UnusableError("time", "some times lie beyond the years 1 to 9999") from None
+
+
+def _doubts(points: NDArray[np.float64], wanted: Hotspots) -> list[Problem]:
+    """Columns that seem to be longitude and latitude, where they are taken for something else.
+
+    Raises
+    ------
+    UnusableError
+        Where the one is given as the other.
+    """
+    (word, across), (other, up) = coordinates(wanted).items()
+    meant = _meant(across), _meant(up)
+    swapped = meant[0] == "lat" or meant[1] == "lon"
+    lon, lat = (up, across) if swapped else (across, up)
+    hint = f"lon: {lon}, lat: {lat}"
+    if word == "lon":
+        if swapped:
+            odd, place = (across, word) if meant[0] == "lat" else (up, other)
+            called = {"lon": "longitude", "lat": "latitude"}[place]
+            raise UnusableError(place, f'the column "{odd}" is given as the {called}', hint)
+        return []
+    farthest = np.abs(points[:, ::-1] if swapped else points).max(axis=0)
+    if any(meant) and (farthest <= (180, 90)).all():
+        message = f'the columns "{across}" and "{up}" are drawn as planar coordinates, in degrees'
+        return [Problem("degrees", "warning", message, hint=hint)]
+    return []
+
+
+def _meant(column: str) -> str:
+    """Whether a column is called a longitude (lon) or a latitude (lat), or neither."""
+    words = [word.lower() for word in _WORDS.findall(column)]
+    lon = any(word in ("lon", "lng", "long") or word.startswith("longit") for word in words)
+    lat = any(word == "lat" or word.startswith("latit") for word in words)
+    return "" if lon == lat else "lon" if lon else "lat"
 
 
 def _in_plane(
@@ -153,12 +213,7 @@ def _in_plane(
     """Points in a plane of equal areas, its system and the words for it."""
     if wanted.lon is None:
         return points, wanted.crs, ""
-    lat = points[:, 1]
-    if np.abs(lat).max() > 90:
-        swapped = np.abs(points[:, 0]).max() <= 90
-        hint = "are latitude and longitude swapped?" if swapped else ""
-        message = f'the column "{wanted.lat}" has latitudes up to {max(lat, key=abs):g}'
-        raise UnusableError("lat", message, hint)
+    _check_degrees(points, wanted)
     try:
         from pyproj import Transformer
     except ImportError:
@@ -170,105 +225,25 @@ def _in_plane(
         system = read_crs(wanted.crs or GEOGRAPHIC)
     except ValueError as error:
         raise UnusableError("crs", str(error)) from None
-    around = shapely.box(*(points.min(axis=0) - 0.01), *(points.max(axis=0) + 0.01))
-    chosen = fitting(np.array([around], dtype=object), system)
+    # Not one box around all: points on both sides of the antimeridian lie near each other.
+    low = np.unique(np.floor(points / NEARBY) * NEARBY, axis=0).clip([-np.inf, -90], [np.inf, 89])
+    chosen = fitting(shapely.box(*low.T, *(low + NEARBY).T), system)
     way = Transformer.from_crs(system, chosen.crs, always_xy=True)
     return np.column_stack(way.transform(*points.T)), chosen.crs.to_string(), chosen.words
 
 
-def _incidents(reader: SourceReader, path: Path, wanted: Hotspots) -> Incidents:
-    """The points and times of a CSV."""
-    named_by = reader.document.fault((*PLACE, "file"), "")
-    text = read_text(path, wanted.file, named_by=named_by, encoding=wanted.encoding)
-    names, rows = _table(text, wanted.file)
-    across, up = (wanted.x, wanted.y) if wanted.x else (wanted.lon, wanted.lat)
-    words = ("x", "y") if wanted.x else ("lon", "lat")
-    columns = dict(zip((*words, "time"), map(str, (across, up, wanted.time)), strict=True))
-    for word, column in columns.items():
-        if column not in names:
-            message = f'{wanted.file} has no column "{column}"'
-            raise UnusableError(word, message, there_are(names))
-    numbers: Sequence[int] = range(len(rows))
-    if wanted.where is not None:
-        try:
-            kept = select(
-                [dict(zip(names, map(_typed, row), strict=True)) for row in rows], wanted.where
-            )
-        except SelectionError as error:
-            raise UnusableError("where", f'"where": {error}', there_are(names)) from None
-        numbers, rows = kept, [rows[i] for i in kept]
-    if not rows:
-        raise UnusableError("where" if wanted.where else "file", "no point is selected")
-    values = [[row[names.index(c)] for row in rows] for c in columns.values()]
-    points = np.column_stack(
-        [_numbers(v, wanted.file, w, numbers) for v, w in zip(values[:2], words, strict=True)]
-    )
-    return Incidents(points, _times(values[2], wanted, numbers))
-
-
-def _table(text: str, name: str) -> tuple[list[str], list[list[str]]]:
-    """The head and the rows of a CSV, whichever of comma, semicolon and tab parts its columns."""
-    head = text.partition("\n")[0]
-    delimiter = max(",;\t", key=head.count)
-    try:
-        lines = [
-            row for row in csv.reader(io.StringIO(text), delimiter=delimiter, strict=True) if row
-        ]
-    except csv.Error as error:
-        raise UnusableError("file", f"{name} is not CSV: {error}") from None
-    if not lines:
-        raise UnusableError("file", f"{name} is empty")
-    names, rows = [column.strip() for column in lines[0]], lines[1:]
-    for number, row in enumerate(rows, start=2):
-        if len(row) != len(names):
-            message = f"{name}, row {number}, has {len(row)} values for {len(names)} columns"
-            raise UnusableError("file", message)
-    return names, rows
-
-
-def _typed(text: str) -> float | str | None:
-    try:
-        return float(text)
-    except ValueError:
-        return text or None
-
-
-def _numbers(texts: list[str], name: str, word: str, numbers: Sequence[int]) -> NDArray[np.float64]:
-    try:
-        found = np.array(texts, dtype=np.float64)
-    except ValueError:
-        found = np.array([_number(text) for text in texts])
-    wild = np.flatnonzero(~(np.abs(found) <= LARGEST_COORDINATE))
-    if len(wild):
-        more = f" (and {len(wild) - 1} more rows)" if len(wild) > 1 else ""
-        message = f'{name}, row {numbers[wild[0]] + 2}: "{texts[wild[0]]}" is no coordinate{more}'
-        raise UnusableError(word, message, "select the rows that have one: where: …")
-    return found
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return np.nan
-
-
-def _times(texts: list[str], wanted: Hotspots, numbers: Sequence[int]) -> list[Time]:
-    known: dict[str, Time | None] = {}
-    for text in texts:
-        if text not in known:
-            try:
-                known[text] = time_of(text, wanted.time_format)
-            except ValueError:
-                known[text] = None
-    times = [known[text] for text in texts]
-    wrong = [i for i, time in enumerate(times) if time is None]
-    if wrong:
-        more = f" (and {len(wrong) - 1} more rows)" if len(wrong) > 1 else ""
-        row = f"{wanted.file}, row {numbers[wrong[0]] + 2}"
-        hint = "expected 2024-01-05, 2024-01-05T12:30 or a number; for others name time_format"
-        raise UnusableError("time", f'{row}: "{texts[wrong[0]]}" is no time{more}', hint)
-    try:
-        return alike([time for time in times if time is not None])
-    except ValueError as error:
-        raise UnusableError("time", f'"time": {error}') from None
+def _check_degrees(points: NDArray[np.float64], wanted: Hotspots) -> None:
+    farthest = [float(max(column, key=abs)) for column in points.T]
+    (lon, lat), most = np.abs(farthest), (FARTHEST_EAST, 90)
+    if lon <= most[0] and lat <= most[1]:
+        return
+    hint = "planar columns are x and y, and their system crs"
+    if lon <= 90 and lat <= FARTHEST_EAST:
+        hint = "are latitude and longitude swapped?"
+    elif lon <= FARTHEST_EAST and lat <= FARTHEST_EAST:
+        hint = ""
+    if lat > most[1]:
+        message = f'the column "{wanted.lat}" has latitudes up to {farthest[1]:g}'
+        raise UnusableError("lat", message, hint)
+    message = f'the column "{wanted.lon}" has longitudes up to {farthest[0]:g}'
+    raise UnusableError("lon", message, hint)

@@ -244,7 +244,7 @@ class Parser:
             hint = "for example POLYGON ((0 0, 9 0, 9 9, 0 0))"
             raise self._invalid(at, message, hint) from None
         geometry = shapely.force_2d(geometry)
-        parts = _flat(geometry)
+        parts = parts_of(geometry)
         polygons = [part for part in parts if isinstance(part, Polygon)]
         self.skipped += len(parts) - len(polygons)
         for polygon in polygons:
@@ -302,13 +302,16 @@ def _is_number(value: str | float) -> bool:
 
 
 def _collect(parts: Sequence[Polygon | MultiPolygon]) -> Polygon | MultiPolygon:
-    flat = [p for part in parts for p in _flat(part) if isinstance(p, Polygon) and not p.is_empty]
+    flat = [
+        p for part in parts for p in parts_of(part) if isinstance(p, Polygon) and not p.is_empty
+    ]
     return flat[0] if len(flat) == 1 else MultiPolygon(flat)
 
 
-def _flat(geometry: Any) -> list[Any]:
+def parts_of(geometry: Any) -> list[Any]:
+    """The points, lines and polygons of a geometry, however deeply it holds them."""
     if hasattr(geometry, "geoms"):
-        return [part for member in geometry.geoms for part in _flat(member)]
+        return [part for member in geometry.geoms for part in parts_of(member)]
     return [geometry]
 
 

@@ -2,48 +2,32 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from geotween.data.columns import Columns, SelectionError, names_of, select
+from geotween.data.columns import Columns, SelectionError, names_of, select, unknown_words
+from geotween.data.held import Held as Held
+from geotween.data.kinds import JSON, PARQUET, WKT, UnreadableError
 from geotween.data.parse import SRID, Parser, is_wkt
-from geotween.data.polygons import Feature
+from geotween.data.paths import (
+    ForbiddenError,
+    check_inside,
+    fixed_part,
+    is_file,
+    is_pattern,
+    several,
+    with_companions,
+)
 from geotween.data.problems import Problem
-from geotween.data.tables import UnreadableError, read_table, table_features
-from geotween.data.topojson import TopologyError, to_geojson
+from geotween.data.tables import read_table, table_features
+from geotween.data.texts import json_features, wkt_features
+from geotween.data.topojson import LayerError
 from geotween.scene.document import Document, Location, read_json, read_text
 from geotween.scene.errors import Fault, SceneError
 from geotween.scene.model import Source
 from geotween.scene.read import validated
-
-JSON = (".geojson", ".json", ".topojson")
-WKT = (".wkt",)
-TABLES = (".gpkg", ".shp", ".zip", ".fgb", ".kml", ".kmz", ".gml", ".parquet", ".geoparquet")
-_PATTERN = re.compile(r"[*?\[]")
-
-
-@dataclass(frozen=True, eq=False)
-class Held:
-    """What a source holds, before it is made valid.
-
-    ``name`` is the file as the scene names it, empty for coordinates in the scene itself; ``at``
-    is where the scene does so. ``words`` tell what ``crs`` is. ``skipped`` counts geometries
-    without area. ``lonlat`` is for formats whose coordinates are longitude and latitude unless
-    they say otherwise, ``wound`` for those that say which way rings run.
-    """
-
-    features: list[Feature]
-    at: Location = ()
-    name: str = ""
-    crs: str | None = None
-    words: str = ""
-    skipped: int = 0
-    lonlat: bool = False
-    wound: bool = False
-    problems: tuple[Problem, ...] = field(default=())
 
 
 class SourceReader:
@@ -56,6 +40,7 @@ class SourceReader:
         self.document = document
         self.sandbox = sandbox
         self.faults: list[Fault] = []
+        self._alike: dict[object, tuple[int, Fault, list[str]]] = {}
 
     def members(self, holder: Any, name: str, prefix: Location = ()) -> dict[int, Held]:
         """The polygons of each member of a list (steps, layers) that has some."""
@@ -75,7 +60,7 @@ class SourceReader:
             source, found = validated(self.document, Source, value, at)
             self.faults += found
             return self.file(source, (*at, "file")) if source else Held([])
-        parser = Parser(lambda where, *words: self._report(self.document, (*at, *where), *words))
+        parser = Parser(lambda where, *words: self._report((*at, *where), *words))
         features = parser.features(value)
         srid = SRID.match(value) if isinstance(value, str) else None
         return Held(
@@ -93,103 +78,102 @@ class SourceReader:
 
     def files(self, source: Source, at: Location) -> list[tuple[Path, Held]]:
         """What each file of a source holds, that may name a folder or a pattern."""
-        path = self.path(source.file, at, pattern=True)
+        folder, name = self.document.path.parent, source.file
+        path = self.path(name, at, pattern=True)
         if path is None:
             return []
-        paths = [path] if _is_file(path) else self._several(path, source.file, at)
-        return [(one, self.read(one, _shown(one, path, source.file), source, at)) for one in paths]
+        try:
+            many = is_pattern(folder, name) or path.is_dir()
+            paths = several(folder, name) if many else [path]
+            check_inside(paths, self.sandbox, "" if many else name)
+        except ForbiddenError as error:
+            self._report(at, error.message, error.hint)
+            return []
+        except (OSError, ValueError) as error:
+            reason = str(getattr(error, "strerror", None) or error).lower()
+            self._report(at, f"cannot read {name}: {reason}")
+            return []
+        if not paths:
+            hint = "paths are relative to the scene file"
+            self._report(at, f"no file of polygons is at {name}", hint)
+        return [(p, self.read(p, p.name if many else name, source, at)) for p in paths]
 
     def read(self, path: Path, name: str, source: Source, at: Location) -> Held:
         """What one file holds, its columns and its selection as the source says."""
-        named_by = self.document.fault(at, "")
-        columns = Columns(source.key or "key", source.class_ or "class", source.name or "name")
-        suffix = path.suffix.lower()
+        faults: list[Fault] = []
         try:
-            if suffix in JSON or suffix in WKT or not _is_file(path):
-                text = read_text(path, name, named_by=named_by, encoding=source.encoding)
-                opened = Document(str(path), path, text)
-                held = self._wkt(opened) if suffix in WKT else self._json(opened, source, columns)
-            else:
-                held = self._table(path, source, columns)
+            held = self._held(path, name, source, at, faults)
+            held = replace(held, at=at, name=name, crs=held.crs or source.crs)
+            named = {"key": source.key, "class": source.class_, "name": source.name}
+            faults += self._missing(held, named) if held.features else []
+            held = self._selected(held, source)
         except SceneError as error:
-            self.faults += error.faults
-            return Held([])
-        except UnreadableError as error:
-            self._report(self.document, at, f"{name}: {error.message}", error.hint)
-            return Held([])
-        held = replace(held, at=at, name=name, crs=held.crs or source.crs)
-        self._check_columns(held, source)
-        return self._selected(held, source)
+            faults += error.faults
+            held = Held([])
+        for fault in faults:
+            self._tell(fault, name, at)
+        return held
 
     def path(self, name: str, at: Location, *, pattern: bool = False) -> Path | None:
         """The path of a name, relative to the scene; None where the sandbox forbids it."""
-        path = self.document.path.parent / name
-        if self.sandbox is not None:
-            fixed = path
-            while pattern and _PATTERN.search(str(fixed)):
-                fixed = fixed.parent
-            if not fixed.resolve().is_relative_to(self.sandbox.resolve()):
-                hint = f"only files in {self.sandbox} may be read here"
-                self._report(self.document, at, f"{name} lies outside of the sandbox", hint)
-                return None
-        return path
-
-    def _several(self, path: Path, name: str, at: Location) -> list[Path]:
-        """The files of a folder, of its most frequent format, or those that fit a pattern."""
-        known = (*JSON, *WKT, *TABLES)
-        if path.is_dir():
-            there = [p for p in sorted(path.iterdir()) if p.suffix.lower() in known]
-            suffixes = [p.suffix.lower() for p in there]
-            usual = max(dict.fromkeys(suffixes), key=suffixes.count, default="")
-            found = [p for p in there if p.suffix.lower() == usual]
-        elif _PATTERN.search(name):
-            base = path.anchor or "."
-            found = sorted(p for p in Path(base).glob(_relative(path, base)) if p.is_file())
-        else:
-            return [path]  # reading it tells what is wrong
-        if not found:
-            hint = "paths are relative to the scene file"
-            self._report(self.document, at, f"no file of polygons is at {name}", hint)
-        if self.sandbox is not None:
-            inside = self.sandbox.resolve()
-            found = [p for p in found if p.resolve().is_relative_to(inside)]
-        return sorted(found, key=_natural)
-
-    def _json(self, source: Document, said: Source, columns: Columns) -> Held:
-        value = read_json(source)
-        parser = Parser(lambda where, *words: self._report(source, where, *words), columns)
-        kind = value.get("type") if isinstance(value, dict) else None
+        folder = self.document.path.parent
         try:
-            if kind == "Topology":
-                value = to_geojson(value, said.layer)
-                parser.report = lambda _, *words: self._report(source, (), *words)
-            features = parser.geojson(value)
-        except TopologyError as error:
-            raise SceneError([source.fault(error.location, str(error), error.hint)]) from None
-        except RecursionError:
-            raise SceneError([source.fault((), "nested too deeply")]) from None
-        wound = kind != "Topology"
-        crs = _crs_member(value)
-        return Held(features, crs=crs, skipped=parser.skipped, lonlat=True, wound=wound)
+            start = fixed_part(folder, name) if pattern else folder / name
+            check_inside([start], self.sandbox, name)
+        except ForbiddenError as error:
+            self._report(at, error.message, error.hint)
+            return None
+        return folder / name
 
-    def _wkt(self, source: Document) -> Held:
-        """One geometry a line."""
-        parser = Parser(lambda at, *words: self._report(source, at, *words))
-        features = []
-        for number, line in enumerate(source.lines, start=1):
-            if line.strip():
+    def check_columns(self, held: Held, named: dict[str, str | None]) -> None:
+        """Report columns that are named but not there, by the word that names them."""
+        for fault in self._missing(held, named):
+            self._tell(fault, held.name, held.at)
 
-                def report(_: Location, *words: str, number: int = number) -> None:
-                    self.faults.append(source.fault_at(number, 1, *words))
-
-                parser.report = report
-                features += parser.features(line)
-        srid = SRID.match(source.text)
-        crs = f"EPSG:{srid[1]}" if srid else None
-        return Held(features, crs=crs, skipped=parser.skipped)
+    def _held(
+        self, path: Path, name: str, source: Source, at: Location, faults: list[Fault]
+    ) -> Held:
+        """What a file holds by its suffix; whatever else can be told of it goes to ``faults``."""
+        kind = path.suffix.lower()
+        columns = Columns(source.key or "key", source.class_ or "class", source.name or "name")
+        if source.layer is not None and kind in (*WKT, *PARQUET):
+            raise self._no_layers(name, at)
+        if kind not in (*JSON, *WKT) and is_file(path):
+            try:
+                return self._table(path, source, columns)
+            except UnreadableError as error:
+                message = f"{name}: {error.message}"
+                raise SceneError([self.document.fault(at, message, error.hint)]) from None
+        named_by = self.document.fault(at, "")
+        text = read_text(path, name, named_by=named_by, encoding=source.encoding)
+        opened = Document(str(path), path, text)
+        if kind in WKT:
+            return wkt_features(opened, faults)
+        value = read_json(opened)
+        topology = isinstance(value, dict) and value.get("type") == "Topology"
+        if source.layer is not None and not topology:
+            raise self._no_layers(name, at)
+        try:
+            return json_features(opened, value, source.layer, columns, faults)
+        except LayerError as error:
+            place = _beside(at, "layer") if source.layer else at
+            fault = self.document.fault(place, f"{name}: {error.message}", error.hint)
+            raise SceneError([fault]) from None
 
     def _table(self, path: Path, source: Source, columns: Columns) -> Held:
-        table = read_table(path, source.layer, source.encoding)
+        confined = self.sandbox is not None
+        if confined:
+            try:
+                check_inside(with_companions(path), self.sandbox)
+            except ForbiddenError as error:
+                raise UnreadableError(error.message, error.hint) from None
+            except OSError as error:
+                raise UnreadableError(
+                    f"cannot be read: {error.strerror or error}".lower()
+                ) from None
+        table = read_table(path, source.layer, source.encoding, confined=confined)
+        if source.name is None:
+            columns = replace(columns, name=table.naming)
         features, skipped, wrong = table_features(table, columns)
         if wrong:
             more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
@@ -197,75 +181,63 @@ class SourceReader:
         problems = (Problem("source", "note", f"{path.name}: {text}") for text in table.warnings)
         return Held(features, crs=table.crs, skipped=skipped, problems=tuple(problems))
 
-    def _check_columns(self, held: Held, source: Source) -> None:
-        """Report columns that the source names and no feature has."""
-        if held.features:
-            named = {"key": source.key, "class": source.class_, "name": source.name}
-            self.check_columns(held, named)
-
-    def check_columns(self, held: Held, named: dict[str, str | None]) -> None:
-        """Report columns that are named but not there, by the word that names them."""
+    def _missing(self, held: Held, named: dict[str, str | None]) -> list[Fault]:
         known = names_of([feature.attributes for feature in held.features])
-        for word, column in named.items():
-            if column is not None and column not in known:
-                place = self._beside(held.at, word)
-                message = f'{held.name} has no column "{column}"'
-                self._report(self.document, place, message, there_are(known))
+        return [
+            self.document.fault(
+                _beside(held.at, word), f'{held.name} has no column "{column}"', there_are(known)
+            )
+            for word, column in named.items()
+            if column is not None and column not in known
+        ]
 
     def _selected(self, held: Held, source: Source) -> Held:
         if source.where is None or not held.features:
             return held
         rows = [feature.attributes for feature in held.features]
-        place = self._beside(held.at, "where")
+        known = names_of(rows)
         try:
             kept = select(rows, source.where)
         except SelectionError as error:
-            self._report(self.document, place, f'"where": {error}', there_are(names_of(rows)))
-            return held
-        problems = held.problems
+            place = _beside(held.at, "where")
+            fault = self.document.fault(place, f'"where": {error}', there_are(known))
+            raise SceneError([fault]) from None
         if not kept:
             message = f'"where" selects none of the {len(rows)} features of {held.name}'
-            problems = (*problems, Problem("no selection", "warning", message))
-        return replace(held, features=[held.features[i] for i in kept], problems=problems)
+            words = unknown_words(source.where, known)
+            hint = f"no column is called {' or '.join(words)}: {there_are(known)}" if words else ""
+            problem = Problem("no selection", "warning", message, hint=hint)
+            return replace(held, features=[], problems=(*held.problems, problem))
+        return replace(held, features=[held.features[i] for i in kept])
 
-    def _beside(self, at: Location, word: str) -> Location:
-        """The place of another word of a source whose file stands at a place."""
-        return (*at[:-1], word) if at and at[-1] == "file" else at
+    def _no_layers(self, name: str, at: Location) -> SceneError:
+        place = _beside(at, "layer")
+        message = f'"layer": {name} is of a format without layers'
+        return SceneError([self.document.fault(place, message, "leave it out")])
 
-    def _report(self, document: Document, at: Location, message: str, hint: str = "") -> None:
-        self.faults.append(document.fault(at, message, hint))
+    def _tell(self, fault: Fault, name: str, at: Location) -> None:
+        """Keep a fault of a file; what files of one folder have alike is told once, and counted."""
+        place = (fault.line, fault.column) if fault.file == self.document.name else None
+        alike = (at, fault.message.replace(name, ""), place)
+        index, first, names = self._alike.setdefault(alike, (len(self.faults), fault, []))
+        if not names or names == [name]:
+            self.faults.append(fault)
+            names[:] = [name]
+            return
+        names += [name] if name not in names else []
+        count = len(names) - 1
+        more = " (and in one more file)" if count == 1 else f" (and in {count} more files)"
+        self.faults[index] = replace(first, message=first.message + more)
+
+    def _report(self, at: Location, message: str, hint: str = "") -> None:
+        self.faults.append(self.document.fault(at, message, hint))
+
+
+def _beside(at: Location, word: str) -> Location:
+    """The place of another word of a source whose file stands at a place."""
+    return (*at[:-1], word) if at and at[-1] == "file" else at
 
 
 def there_are(columns: Sequence[str]) -> str:
     """A hint that lists columns."""
     return f"there are {', '.join(columns)}" if columns else "there are no columns"
-
-
-def _crs_member(value: dict[str, Any]) -> str | None:
-    """The name in a GeoJSON's ``crs``, which RFC 7946 did away with and many files have."""
-    member = value.get("crs") if isinstance(value, dict) else None
-    properties = member.get("properties") if isinstance(member, dict) else None
-    name = properties.get("name") if isinstance(properties, dict) else None
-    return name if isinstance(name, str) else None
-
-
-def _shown(path: Path, base: Path, name: str) -> str:
-    """What to call a file: as the scene names it, or by its own name in the folder named."""
-    return name if path == base else path.name
-
-
-def _relative(path: Path, base: str) -> str:
-    return str(path.relative_to(base)) if path.is_absolute() else str(path)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a name that no file can have
-        return False
-
-
-def _natural(path: Path) -> list[tuple[bool, int, str]]:
-    """Names in the order of the numbers in them: 2 before 10."""
-    parts = re.split(r"(\d+)", path.name)
-    return [(part.isdigit(), int(part) if part.isdigit() else 0, part) for part in parts]

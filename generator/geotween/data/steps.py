@@ -58,13 +58,15 @@ def _worded(
         hint = "name the time of each: - {time: …, label: …}; " + _times(members)
         reader.faults.append(reader.document.fault(("steps",), message, hint, at_key=True))
         return members
+    worded: dict[int, int] = {}  # which entry has the words of a step
     for number, step in enumerate(words):
         if by_order:
             found[number] = _with_words(found[number], step, hold)
             continue
         meant = [] if step.time is None else _at(members, step.time)
-        if len(meant) == 1:
+        if len(meant) == 1 and meant[0] not in worded:
             found[meant[0]] = _with_words(found[meant[0]], step, hold)
+            worded[meant[0]] = number
             continue
         place: Location = ("steps", number)
         if step.time is None:
@@ -73,6 +75,9 @@ def _worded(
             place = (*place, "time")
             count = f"{len(meant)} steps lie" if meant else "no step lies"
             message = f"{count} at {words_of(step.time)}"
+            if len(meant) == 1:
+                label = members[meant[0]].label
+                message = f"{label} has words already, in entry {worded[meant[0]] + 1}"
         reader.faults.append(reader.document.fault(place, message, _times(members)))
     return found
 

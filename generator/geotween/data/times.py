@@ -1,4 +1,4 @@
-"""Times: read from columns and file names, kept by periods, and put into words."""
+"""Times: read from columns, kept by periods, and put into words."""
 
 from __future__ import annotations
 
@@ -6,42 +6,86 @@ import datetime
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
+from geotween.data.columns import as_text
 from geotween.scene.values import Time, read_time
 
+AnyDate = TypeVar("AnyDate", bound=datetime.date)
+
 _SLASHES = re.compile(r"^(\d{4})/(\d{1,2})/(\d{1,2})")  # GDAL's way to write a date as text
-# In the name of a file, the most particular first; digits around them would make another number.
-_IN_NAMES = (
-    re.compile(
-        r"(?<!\d)(?P<year>\d{4})-?(?P<month>[01]\d)-?(?P<day>[0-3]\d)"
-        r"(?:[T_ ](?P<hour>[0-2]\d)(?:[-:.h]?(?P<minute>[0-5]\d))?(?:[-:.]?(?P<second>[0-5]\d))?)?"
-        r"(?!\d)"
-    ),
-    re.compile(r"(?<!\d)(?P<year>\d{4})-(?P<month>[01]\d)(?!\d)"),
-    re.compile(r"(?<!\d)(?P<year>[12]\d{3})(?!\d)"),
-)
-_MONTH = re.compile(r"(\d{4})-(\d{2})")
+_MONTH = re.compile(r"\s*\d{4}-\d{2}\s*")
+_DELTAS = {
+    "week": datetime.timedelta(days=7),
+    "day": datetime.timedelta(days=1),
+    "hour": datetime.timedelta(hours=1),
+    "moment": datetime.datetime.resolution,
+}
+_MONTHS = {"year": 12, "quarter": 3, "month": 1}
+# Written and read back, it shows whether a pattern can be read by: it has a zone, and no part is 0.
+_SAMPLE = datetime.datetime(2024, 1, 5, 12, 30, 15, 250, tzinfo=datetime.UTC)
+
+_WRITTEN = "expected 2024-01-05, 2024-01-05T12:30 or a number; for others name time_format"
+CODES = '"%m/%d/%Y %I:%M %p" reads 01/05/2024 12:30 PM, "%d.%m.%y" reads 05.01.24'
 
 
 @dataclass(frozen=True)
 class Period:
-    """From a first moment up to, not including, an end; with ``closed`` the end belongs to it."""
+    """A time or a stretch of time, and what lies in it.
 
-    text: str
-    first: Time
-    end: Time
-    closed: bool = False
+    ``numbers`` are its ends among numbers, which belong to it. ``moments`` are its first moment
+    among dates and the first one after it, None where the calendar ends; a period of whole
+    ``days`` begins and ends by the clock of the time that is compared with it.
+    """
+
+    numbers: tuple[float, float] | None
+    moments: tuple[datetime.datetime, datetime.datetime | None] | None
+    days: bool = True
 
     def holds(self, time: Time) -> bool:
-        """Whether a time of the same kind lies in it."""
-        if isinstance(self.first, float) != isinstance(time, float):
+        """Whether a time lies in it.
+
+        Raises
+        ------
+        ValueError
+            Where one has a zone, and the other a time of day without one.
+        """
+        if isinstance(time, float):
+            return self.numbers is not None and self.numbers[0] <= time <= self.numbers[1]
+        if self.moments is None:
             return False
-        first, end = _alike(self.first, time), _alike(self.end, time)
-        if self.closed and not isinstance(self.end, datetime.datetime | float):
-            end = _alike(self.end + datetime.timedelta(days=1), time)
-            return bool(first <= time < end)
-        return bool(first <= time <= end if self.closed else first <= time < end)
+        first, end = self.moments
+        moment = _moment(time)
+        if self.days:
+            moment = moment.replace(tzinfo=None)
+        elif first.tzinfo is None and moment.tzinfo is not None:
+            raise ValueError("it has no zone, the times have one")
+        elif first.tzinfo is not None and moment.tzinfo is None:
+            raise ValueError("it has a zone, the times have none")
+        return first <= moment and (end is None or moment < end)
+
+    def start(self, like: Time) -> Time:
+        """Its beginning, as a time of the kind of one that it holds."""
+        if isinstance(like, float):
+            assert self.numbers is not None
+            return self.numbers[0]
+        assert self.moments is not None
+        first, _ = self.moments
+        if not isinstance(like, datetime.datetime):
+            return first.date()
+        return first.replace(tzinfo=like.tzinfo) if self.days else first
+
+
+def check_pattern(pattern: str | None) -> None:
+    """Raise ValueError for a pattern that ``strptime`` cannot read by."""
+    if pattern is None:
+        return
+    try:
+        datetime.datetime.strptime(_SAMPLE.strftime(pattern), pattern)
+    except (ValueError, re.error):
+        raise ValueError(f'"{pattern}" is no format of times') from None
+    if "%" not in pattern:
+        raise ValueError(f'"{pattern}" is no format of times: it has no code such as %Y')
 
 
 def time_of(value: Any, pattern: str | None = None) -> Time:
@@ -52,12 +96,21 @@ def time_of(value: Any, pattern: str | None = None) -> Time:
     ValueError
         Where it tells none.
     """
+    if pattern is not None and not isinstance(value, datetime.date):
+        return datetime.datetime.strptime(as_text(value).strip(), pattern)
     if isinstance(value, int | float) and not isinstance(value, bool):
         return read_time(repr(value))
     text = str(value).strip()
-    if pattern is not None:
-        return datetime.datetime.strptime(text, pattern)
     return read_time(_SLASHES.sub(lambda m: f"{m[1]}-{m[2]:0>2}-{m[3]:0>2}", text))
+
+
+def wrong_time(value: Any, pattern: str | None) -> tuple[str, str, str]:
+    """What to say of a value that tells no time: the word of the scene to blame, why, a hint."""
+    if value is None:
+        return "time", "no time", _WRITTEN
+    if pattern is None:
+        return "time", f'"{value}" is no time', _WRITTEN
+    return "time_format", f'"{value}" does not match time_format "{pattern}"', CODES
 
 
 def alike(times: Sequence[Time]) -> list[Time]:
@@ -80,39 +133,37 @@ def alike(times: Sequence[Time]) -> list[Time]:
     return [_moment(t) if isinstance(t, datetime.date) else t for t in times]
 
 
-def times_in_names(names: Sequence[str]) -> list[Time] | None:
-    """The time in each of some files' names, all written alike; None where there is none."""
-    for pattern in _IN_NAMES:
-        matches = [pattern.search(name) for name in names]
-        found = [_named(match) for match in matches if match]
-        if len(found) == len(names) and None not in found:
-            return alike([time for time in found if time is not None])
-    return None
+def period_of(text: str) -> Period:
+    """A time or a period as it is written: 2020, 2020-09, 2020-09-01T12:00, 2020-09-01/2020-09-14.
 
-
-def period_of(text: str) -> Period | Time:
-    """A period (2020, 2020-09, 2020-09-01/2020-09-14) or a single time.
-
-    A bare year comes back as a number; ``year`` makes a period of it.
+    A year, a month or a day is all of it, and ``a/b`` runs from the first moment of ``a`` to the
+    last one of ``b``. A number is a year among dates, where there is such a year.
 
     Raises
     ------
     ValueError
-        Where it is neither.
+        Where it is none, or its end does not go with its beginning.
     """
-    first, slash, last = text.strip().partition("/")
-    if slash:
-        return Period(text, time_of(first), time_of(last), closed=True)
-    if month := _MONTH.fullmatch(first):
-        start = datetime.date(int(month[1]), int(month[2]), 1)
-        return Period(text, start, _next(start, "month"))
-    return time_of(first)
-
-
-def year(number: float) -> Period:
-    """A year as a period."""
-    start = datetime.date(int(number), 1, 1)
-    return Period(str(int(number)), start, _next(start, "year"))
+    first, slash, last = text.partition("/")
+    if not slash:
+        return _single(text)
+    before, after = _single(first), _single(last)
+    numbers = moments = None
+    if before.numbers and after.numbers and before.numbers[0] <= after.numbers[1]:
+        numbers = before.numbers[0], after.numbers[1]
+    if before.moments and after.moments:
+        start, end = before.moments[0], after.moments[1]
+        if before.days and not after.days:
+            start = start.replace(tzinfo=after.moments[0].tzinfo)
+        elif after.days and end is not None:
+            end = end.replace(tzinfo=start.tzinfo)
+        if end is not None and (start.tzinfo is None) != (end.tzinfo is None):
+            raise ValueError("one end has a zone, the other does not")
+        if end is None or start < end:
+            moments = start, end
+    if numbers is None and moments is None:
+        raise ValueError("its end does not go with its beginning")
+    return Period(numbers, moments, before.days and after.days)
 
 
 def start_of(time: datetime.date, period: str) -> datetime.date:
@@ -128,12 +179,19 @@ def start_of(time: datetime.date, period: str) -> datetime.date:
     return day.replace(month=month, day=1)
 
 
-def periods_between(first: datetime.date, last: datetime.date, period: str) -> list[datetime.date]:
-    """The starts of all periods from the one of ``first`` to that of ``last``."""
-    found, now = [], start_of(first, period)
-    while now <= start_of(last, period):
+def periods_between(
+    first: datetime.date, last: datetime.date, period: str, most: int | None = None
+) -> list[datetime.date]:
+    """The starts of all periods from the one of ``first`` to that of ``last``.
+
+    Where they are more than ``most``, one more than that comes back.
+    """
+    found: list[datetime.date] = []
+    now: datetime.date | None = start_of(first, period)
+    end = start_of(last, period)
+    while now is not None and now <= end and (most is None or len(found) <= most):
         found.append(now)
-        now = _next(now, period)
+        now = _after(now, period)
     return found
 
 
@@ -146,7 +204,7 @@ def words_of(time: Time, period: str | None = None) -> str:
     if period == "quarter":
         return f"{time.year} Q{(time.month + 2) // 3}"
     if period == "month":
-        return f"{time.year}-{time.month:02}"
+        return f"{time.year:04}-{time.month:02}"
     if period == "week":
         return f"{time.isocalendar().year}-W{time.isocalendar().week:02}"
     if isinstance(time, datetime.datetime):
@@ -155,44 +213,37 @@ def words_of(time: Time, period: str | None = None) -> str:
     return time.isoformat()
 
 
-def _named(match: re.Match[str]) -> Time | None:
-    parts = {name: int(text) for name, text in match.groupdict().items() if text is not None}
-    if len(parts) == 1:
-        return float(parts["year"])
+def _single(text: str) -> Period:
+    """A year, month, day, date-time or number as a period."""
+    time = time_of(text)
+    if isinstance(time, datetime.datetime):
+        return Period(None, (time, _after(time, "moment")), days=False)
+    if isinstance(time, datetime.date):
+        return Period(None, _all_of(time, "month" if _MONTH.fullmatch(text) else "day"))
+    is_year = time.is_integer() and datetime.MINYEAR <= time <= datetime.MAXYEAR
+    return Period(
+        (time, time), _all_of(datetime.date(int(time), 1, 1), "year") if is_year else None
+    )
+
+
+def _all_of(
+    start: datetime.date, period: str
+) -> tuple[datetime.datetime, datetime.datetime | None]:
+    return _moment(start), _after(_moment(start), period)
+
+
+def _after(start: AnyDate, period: str) -> AnyDate | None:
+    """The start of the next period; None where the calendar ends."""
     try:
-        if "hour" in parts:
-            return datetime.datetime(**parts)  # type: ignore[arg-type]  # its zone is no number
-        return datetime.date(parts["year"], parts["month"], parts.get("day", 1))
-    except ValueError:  # 2024-13-45 is no date
+        if period in _DELTAS:
+            return start + _DELTAS[period]
+        years, month = divmod(start.month - 1 + _MONTHS[period], 12)
+        return start.replace(year=start.year + years, month=month + 1)
+    except (ValueError, OverflowError):
         return None
-
-
-def _next(start: datetime.date, period: str) -> datetime.date:
-    months = {"year": 12, "quarter": 3, "month": 1}.get(period)
-    if months is None:
-        return (
-            start
-            + {
-                "week": datetime.timedelta(days=7),
-                "day": datetime.timedelta(days=1),
-                "hour": datetime.timedelta(hours=1),
-            }[period]
-        )
-    total = start.month - 1 + months
-    return start.replace(year=start.year + total // 12, month=total % 12 + 1)
 
 
 def _moment(time: datetime.date) -> datetime.datetime:
     if isinstance(time, datetime.datetime):
         return time
     return datetime.datetime.combine(time, datetime.time())
-
-
-def _alike(bound: Time, time: Time) -> Any:
-    """A bound of a period as the kind of a time that is compared with it."""
-    if isinstance(time, datetime.datetime) and isinstance(bound, datetime.date):
-        moment = _moment(bound)
-        return moment if moment.tzinfo else moment.replace(tzinfo=time.tzinfo)
-    if isinstance(bound, datetime.datetime):
-        return bound.date()
-    return bound

@@ -29,6 +29,10 @@ class TopologyError(ValueError):
         self.hint = hint
 
 
+class LayerError(TopologyError):
+    """No object is named where there are several, or one that is not there."""
+
+
 def to_geojson(topology: Json, object_name: str | None = None) -> Json:
     """One object of a topology as a GeoJSON FeatureCollection, one feature per geometry.
 
@@ -46,7 +50,9 @@ def to_geojson(topology: Json, object_name: str | None = None) -> Json:
     Raises
     ------
     TopologyError
-        Where the document is not as the specification has it, or has no such object.
+        Where the document is not as the specification has it.
+    LayerError
+        Where it has several objects and none is named, or has no such object.
 
     Notes
     -----
@@ -74,13 +80,13 @@ def _chosen(objects: Any, name: str | None) -> tuple[str, Any]:
         hint = '{"objects": {"states": {"type": "GeometryCollection", ...}}}'
         raise TopologyError('a Topology needs "objects"', ("objects",), hint)
     if name is None and len(objects) > 1:
-        message = f"this topology has {len(objects)} objects, and none is named"
-        raise TopologyError(message, ("objects",), f"name one of {', '.join(objects)}")
+        message = "the file has several layers: name one with layer:"
+        raise LayerError(message, ("objects",), f"there are {', '.join(objects)}")
     if name is None:
         name = next(iter(objects))
     elif name not in objects:
-        message = f'this topology has no object "{name}"'
-        raise TopologyError(message, ("objects",), did_you_mean(name, list(objects)))
+        message = f'there is no layer "{name}"'
+        raise LayerError(message, ("objects",), did_you_mean(name, list(objects)))
     return name, objects[name]
 
 

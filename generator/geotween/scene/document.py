@@ -119,19 +119,25 @@ def read_text(
         hint = _similar_file(path)
         raise SceneError([replace(named_by, message=text, hint=hint)]) from None
     try:
-        return raw.decode(encoding or "utf-8-sig")
-    except LookupError:
+        return raw.decode(encoding or "utf-8").removeprefix("\ufeff")
+    except UnicodeDecodeError as error:
+        raise SceneError([_undecodable(error, name, named_by, encoding)]) from None
+    except (LookupError, UnicodeError):
         fault = named_by or Fault(name, 1, 1, "")
         hint = "such as utf-8, latin-1, cp1252 or utf-16"
         raise SceneError([replace(fault, message=f"no encoding {encoding}", hint=hint)]) from None
-    except UnicodeDecodeError as error:
-        before = error.object[: error.start].decode(errors="replace")
-        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        message = f"the byte 0x{error.object[error.start]:02X} is not {encoding or 'UTF-8'}"
-        hint = "save the file as UTF-8"
-        if named_by is not None:
-            hint += ", or name its encoding: {file: …, encoding: latin-1}"
-        raise SceneError([Fault(name, line, column, message, hint)]) from None
+
+
+def _undecodable(
+    error: UnicodeDecodeError, name: str, named_by: Fault | None, encoding: str | None
+) -> Fault:
+    before = error.object[: error.start].decode(errors="replace")
+    line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+    message = f"the byte 0x{error.object[error.start]:02X} is not {encoding or 'UTF-8'}"
+    hint = "save the file as UTF-8"
+    if named_by is not None:
+        hint += ", or name its encoding: {file: …, encoding: latin-1}"
+    return Fault(name, line, column, message, hint)
 
 
 def read_json(document: Document) -> Any:
@@ -145,7 +151,7 @@ def read_json(document: Document) -> Any:
     try:
         return json.loads(document.text)
     except json.JSONDecodeError as error:
-        hint = "expected GeoJSON, the one format that is read from files"
+        hint = "expected GeoJSON or TopoJSON: the suffix says which format a file has"
         if not document.text.strip():
             hint = "the file is empty"
         elif error.pos >= len(document.text.rstrip()):

@@ -198,7 +198,7 @@ def _check_times(document: Document, values: dict[str, Any]) -> list[Fault]:
     times = [_as(_TIME, time) for time in written]
     faults = []
     kinds = {_kind(time) for time in times if time is not None}
-    if len(kinds) > 1:
+    if len(kinds) > 1 and not _whole(values):  # words may say 2019 of a day
         odd = next(i for i, t in enumerate(times) if t is not None and _kind(t) != _kind_of(times))
         faults.append(
             document.fault(
