@@ -67,11 +67,17 @@ def test_value_that_is_no_text(value: object, message: str) -> None:
 def test_identity_is_told_by_three_columns_and_faults_by_their_column() -> None:
     told: list[tuple[str, str]] = []
     row = {"id": 7, "kind": ["a"], "name": None}
-    columns = Columns("id", "kind", "name")
+    columns = Columns("id", "kind", "name", frozenset({"id", "kind"}))
     found = identity(row, columns, lambda column, message: told.append((column, message)))
     assert found == ("7", None, "")
     assert told == [("kind", '"kind": expected a text')]
-    assert identity(row, Columns(), lambda *_: None) == (None, None, "")
+
+
+def test_column_that_happens_to_be_called_so_may_hold_anything() -> None:
+    told: list[object] = []
+    row = {"key": {"a": 1}, "class": ["a"], "name": "x"}
+    assert identity(row, Columns(), lambda *words: told.append(words)) == (None, None, "x")
+    assert told == []
 
 
 def test_names_come_in_the_order_of_their_appearance() -> None:

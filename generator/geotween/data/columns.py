@@ -31,15 +31,20 @@ _QUOTED = re.compile(r"'(?:[^']|'')*'" r'|"((?:[^"]|"")*)"')
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns that tell a feature's key, class and name; None where there is none."""
+    """The columns that tell a feature's key, class and name.
 
-    key: str | None = None
-    class_: str | None = None
-    name: str | None = None
+    ``asked`` are those that the scene names: of others that happen to be called so, a value that
+    is no text says nothing.
+    """
+
+    key: str = "key"
+    class_: str = "class"
+    name: str = "name"
+    asked: frozenset[str] = frozenset()
 
 
-# What a file calls them that was made for geotween.
-NAMED_SO = Columns("key", "class", "name")
+# Features written in the scene itself.
+NAMED_SO = Columns(asked=frozenset({"key", "class", "name"}))
 
 
 class SelectionError(ValueError):
@@ -52,11 +57,12 @@ def identity(
     """A feature's key, class and name; a value that is no text is told by its column."""
     found = []
     for column in (columns.key, columns.class_, columns.name):
-        value = attributes.get(column) if column is not None else None
+        value = attributes.get(column)
         try:
             found.append(None if value is None else as_text(value))
         except ValueError as error:
-            report(str(column), f'"{column}"{error}')
+            if column in columns.asked:
+                report(column, f'"{column}"{error}')
             found.append(None)
     key, class_, name = found
     return key, class_, name or ""

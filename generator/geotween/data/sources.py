@@ -135,7 +135,10 @@ class SourceReader:
     ) -> Held:
         """What a file holds by its suffix; whatever else can be told of it goes to ``faults``."""
         kind = path.suffix.lower()
-        columns = Columns(source.key or "key", source.class_ or "class", source.name or "name")
+        asked = frozenset(filter(None, (source.key, source.class_, source.name)))
+        columns = Columns(
+            source.key or "key", source.class_ or "class", source.name or "name", asked
+        )
         if source.layer is not None and kind in (*WKT, *PARQUET):
             raise self._no_layers(name, at)
         if kind not in (*JSON, *WKT) and is_file(path):
