@@ -132,6 +132,26 @@ def test_turned_mirrored_or_rescaled_map_has_the_same_faults(way: Sequence[float
     assert len(found) == 2
 
 
+def test_gap_that_a_page_shows_is_noted_with_its_area_and_its_step() -> None:
+    lens = Polygon([(4, 0), (8, 0), (8, 4), (4, 4), (4, 3), (4.1, 2), (4, 1)])
+    left = Polygon([(0, 0), (4, 0), (4, 1), (4, 3), (4, 4), (0, 4)])
+    (problem,) = coverage_faults(listed(left, lens), gap_width=0.2, step="1990")
+    assert str(problem) == (
+        "note: 1990: a narrow gap between neighbours (0.1 square map units); "
+        "map: {clean: true} closes what it can"
+    )
+    assert coverage_faults(listed(left, lens), gap_width=0.05, step="1990") == []
+
+
+def test_open_gap_between_neighbours_is_closed_with_the_same_vertices_on_both_sides() -> None:
+    shapes = [box(0, 0, 9, 4), box(0, 4.02, 3, 8), box(3, 4.02, 9, 8), box(20, 0, 21, 1)]
+    filled = cleaned(*shapes, gap_width=0.1)
+    assert shapely.coverage_is_valid(filled)
+    assert sum(s.area for s in filled) == pytest.approx(9 * 8 + 1, abs=1e-3)
+    assert shapely.union_all(filled[:3]).geom_type == "Polygon"
+    assert filled[3] is shapes[3]
+
+
 def test_gap_is_closed() -> None:
     ring = [box(0, 0, 9, 1), box(0, 1, 4, 3), box(4.05, 1, 9, 3), box(0, 3, 9, 4)]
     filled = cleaned(*ring)
@@ -156,10 +176,7 @@ def test_vertex_is_given_to_the_side_that_lacks_it() -> None:
     assert (4, 1) in kept[0].geometry.exterior.coords
     assert kept[1] is features[1]
     assert kept[2] is features[2]
-    assert [(p.kind, p.severity, p.measure, p.steps) for p in problems] == [
-        ("cleaned", "note", 0, ("1990",))
-    ]
-    assert problems[0].message == "1 polygon fitted to their neighbours"
+    assert problems == []  # no area changed hands
 
 
 def test_coverage_that_fits_comes_back_as_it_was() -> None:
@@ -171,7 +188,9 @@ def test_coverage_that_fits_comes_back_as_it_was() -> None:
 
 def test_area_that_changed_hands_is_told() -> None:
     features = [Feature(LEFT, 1), Feature(box(3.9, 0, 8, 4), 2)]
-    _, problems = clean_coverage(features, gap_width=0, snapping=0)
+    _, problems = clean_coverage(features, gap_width=0, snapping=0, step="1990")
+    assert [(p.kind, p.severity, p.steps) for p in problems] == [("cleaned", "note", ("1990",))]
+    assert problems[0].message == "1 polygon fitted to their neighbours"
     assert (problems[0].measure, problems[0].unit) == (
         pytest.approx(0.4),
         "square map units changed",

@@ -184,11 +184,47 @@ def test_all_others_are_cut(other: Feature) -> None:
     assert "the smaller keeps" in problem.hint
 
 
-def test_sliver_along_a_border_is_cut_and_noted() -> None:
-    kept, problems = separate(keyed(LARGE, box(4 - 1e-7, 0, 5, 4)))
-    assert kept[0].geometry.bounds[2] == 4 - 1e-7
-    assert told(problems) == [("overlap", "note", "")]
-    assert problems[0].measure == pytest.approx(4e-7)
+@pytest.mark.parametrize(("pixel", "severity"), [(0.21, "note"), (0.19, "warning")])
+def test_overlap_that_the_page_cannot_show_is_cut_and_noted(pixel: float, severity: str) -> None:
+    kept, problems = separate(keyed(LARGE, box(3.9, 0, 5, 4)), pixel=pixel)
+    assert kept[0].geometry.bounds[2] == 3.9
+    assert told(problems) == [("overlap", severity, "")]
+    assert problems[0].measure == pytest.approx(0.4)
+
+
+def test_overlap_that_shows_at_one_place_only_is_a_warning() -> None:
+    wedge = Polygon([(4, 0), (8, 0), (8, 4), (3, 4)])
+    assert told(separate(keyed(LARGE, wedge), pixel=1)[1]) == [("overlap", "warning", "")]
+    assert told(separate(keyed(LARGE, wedge), pixel=2)[1]) == [("overlap", "note", "")]
+
+
+@pytest.mark.parametrize(("deep", "count"), [(0.03, 2), (0.05, 1)])
+def test_features_without_key_become_one_where_it_is_more_than_a_border(
+    deep: float, count: int
+) -> None:
+    shapes = [LARGE, box(4 - deep, 0, 8 - deep, 4)]
+    kept, problems = separate([Feature(shape) for shape in shapes])
+    assert len(kept) == count
+    assert problems[0].message.startswith(
+        "1 pair of overlapping features " + ("without a key" if count == 1 else "were cut")
+    )
+    assert sum(f.geometry.area for f in kept) == pytest.approx(32 - 4 * deep)
+
+
+def levels(*shapes: Shape, key: bool = False, class_: str | None = None) -> str:
+    features = [
+        Feature(shape, f"k{n}" if key else None, class_, attributes={"kt": n, "storm": "Ida"})
+        for n, shape in enumerate(shapes)
+    ]
+    return separate(features, columns=["kt", "storm"])[1][0].hint
+
+
+def test_hint_names_the_column_that_tells_nested_levels_apart() -> None:
+    nested, word = [LARGE, box(1, 1, 3, 3)], "stay whole where the column that tells them apart"
+    assert levels(*nested).endswith(f"{word} is named: class: kt")
+    assert levels(*nested, key=True).endswith(f"{word} is named: class: kt")
+    assert word not in levels(*nested, class_="gale")
+    assert word not in levels(LARGE, SMALL)  # a third of it lies in the large one
 
 
 def test_overlap_thinner_than_numbers_can_tell_is_left_alone() -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geotween.data.nodes import edges_of, noded
 from geotween.data.overlaps import crossing_grid
 from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent, name_of
 from geotween.data.problems import Problem, Severity
+from geotween.data.small import gaps
 
 # Two polygons that run along each other for this part of the shorter boundary have a border in
 # common; by chance polygons meet at points, or along a piece of a straight edge.
@@ -32,12 +34,13 @@ Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
-def looks_like_coverage(geometries: Geometries) -> bool:
+def looks_like_coverage(geometries: Geometries, *, gap_width: float = 0.0) -> bool:
     """Whether polygons share borders at all: two run along each other on opposite sides of a line.
 
     They do where it is ``COMMON_BORDER`` of the shorter of their boundaries, vertex by vertex or
-    nearer than ``NARROW``. ``geometries`` is an object array (n,) of valid (Multi)Polygons.
-    Polygons that lie over each other have no border in common.
+    nearer than ``gap_width`` (in the data's units), at least ``NARROW``. ``geometries`` is an
+    object array (n,) of valid (Multi)Polygons. Polygons that lie over each other have no border in
+    common.
     """
     if len(geometries) < 2:
         return False
@@ -45,7 +48,7 @@ def looks_like_coverage(geometries: Geometries) -> bool:
     lengths = shapely.length(geometries)
     if (common >= COMMON_BORDER * lengths[pairs].min(axis=1)).any():
         return True
-    narrow = NARROW * extent(shapely.total_bounds(geometries))
+    narrow = max(gap_width, NARROW * extent(shapely.total_bounds(geometries)))
     near = shapely.STRtree(geometries).query(geometries, predicate="dwithin", distance=narrow).T
     near = near[near[:, 0] < near[:, 1]]
     return any(
@@ -54,18 +57,21 @@ def looks_like_coverage(geometries: Geometries) -> bool:
     )
 
 
-def coverage_faults(geometries: Geometries, *, step: str = "") -> list[Problem]:
+def coverage_faults(
+    geometries: Geometries, *, gap_width: float = 0.0, step: str = ""
+) -> list[Problem]:
     """Gaps and overlaps along the common borders of polygons; none where they are no coverage.
 
-    Gaps are found that are narrower than ``NARROW`` of the extent. They are a note, as are overlaps
-    no deeper than that and vertices that one side lacks; a deeper overlap is a warning. Each
-    problem (kind ``coverage``) has the length of the edges at fault as its measure.
+    Borders nearer than ``NARROW`` of the extent are a note, as are overlaps no deeper than that
+    and vertices that one side lacks; a deeper overlap is a warning. These problems (kind
+    ``coverage``) have the length of the edges at fault as their measure. Wider gaps, narrower than
+    ``gap_width`` (in the data's units), are a note with their area.
 
     Notes
     -----
     The edges are those of JTS/GEOS CoverageValidator; O(n log n) in the vertices.
     """
-    if not looks_like_coverage(geometries):
+    if not looks_like_coverage(geometries, gap_width=gap_width):
         return []
     narrow = NARROW * extent(shapely.total_bounds(geometries))
     edges = shapely.coverage_invalid_edges(geometries, gap_width=narrow)
@@ -86,7 +92,7 @@ def coverage_faults(geometries: Geometries, *, step: str = "") -> list[Problem]:
                     "map units of border", "map: {clean: true} mends it",
                 )
             )  # fmt: skip
-    return problems
+    return problems + _gaps_told(geometries, narrow, gap_width, step)
 
 
 def clean_coverage(
@@ -94,7 +100,9 @@ def clean_coverage(
 ) -> tuple[list[Feature], list[Problem]]:
     """Features without overlaps and narrow gaps, whose common borders have the same vertices.
 
-    A feature that fits already keeps its geometry.
+    A gap with polygons all around it goes to one of them. So does one that is open at the coast
+    where it is a strip (``gaps``): a short one or a bay stays, as data leave inlets open on
+    purpose. A feature that fits already keeps its geometry.
 
     Parameters
     ----------
@@ -109,8 +117,8 @@ def clean_coverage(
     Returns
     -------
     features, problems
-        A note with the area that changed hands, and a warning for every feature that vanished
-        (kind ``cleaned``).
+        A note with the area that changed hands, where some did, and a warning for every feature
+        that vanished (kind ``cleaned``).
 
     Raises
     ------
@@ -130,22 +138,18 @@ def clean_coverage(
     given = np.array([f.geometry for f in features], dtype=object)
     # Without any snapping GEOS 3.14 loses polygons at a vertex that one side lacks.
     snapping = max(snapping, RELATIVE_TOLERANCE * extent(shapely.total_bounds(given)))
-    cleaned = given
-    for _ in range(PASSES):
-        cleaned = clean(cleaned, gap_width=gap_width, snapping_distance=snapping)
-        if shapely.coverage_is_valid(cleaned):
-            break
+    cleaned = _fitted(clean, given, gap_width, snapping)
+    cleaned = _without_strips(cleaned, gap_width) if gap_width > 0 else cleaned
     changed = ~shapely.equals_exact(given, cleaned, normalize=True)
     before, after = given[changed], cleaned[changed]
-    steps = (step,) if step else ()
+    grid = crossing_grid(given) if len(before) else 0.0
+    moved = shapely.area(shapely.symmetric_difference(before, after, grid_size=grid))
+    moved = moved[moved > snapping * shapely.length(before)]
     problems = []
-    if len(before):
-        grid = crossing_grid(given)
-        moved = shapely.area(shapely.symmetric_difference(before, after, grid_size=grid)).sum()
-        message = f"{_polygons(len(before))} fitted to their neighbours"
-        problems.append(
-            Problem("cleaned", "note", message, steps, "", float(moved), "square map units changed")
-        )
+    if len(moved):
+        message = f"{_polygons(len(moved))} fitted to their neighbours"
+        unit, steps = "square map units changed", (step,) if step else ()
+        problems.append(Problem("cleaned", "note", message, steps, "", float(moved.sum()), unit))
     kept = []
     for index, feature in enumerate(features):
         if cleaned[index].is_empty:
@@ -154,6 +158,45 @@ def clean_coverage(
         else:
             kept.append(replace(feature, geometry=cleaned[index]) if changed[index] else feature)
     return kept, problems
+
+
+def _fitted(
+    clean: Callable[..., Geometries], geometries: Geometries, gap_width: float, snapping: float
+) -> Geometries:
+    for _ in range(PASSES):
+        geometries = clean(geometries, gap_width=gap_width, snapping_distance=snapping)
+        if shapely.coverage_is_valid(geometries):
+            break
+    return geometries
+
+
+def _without_strips(geometries: Geometries, width: float) -> Geometries:
+    """A valid coverage with its open gaps each given to the polygon that borders it most."""
+    strips, takers = gaps(geometries, width, closed=False)
+    if not len(strips):
+        return geometries
+    filled = geometries.copy()
+    for strip, taker in zip(strips, takers, strict=True):
+        filled[taker] = shapely.union(filled[taker], strip)
+    # At the mouths a neighbour lacks the strip's last corner.
+    beside = shapely.STRtree(geometries).query(strips, predicate="dwithin", distance=width)[1]
+    near = np.unique(np.append(beside, takers))
+    filled[near] = noded(filled[near])
+    return filled if shapely.coverage_is_valid(filled[near]) else geometries
+
+
+def _gaps_told(geometries: Geometries, narrow: float, gap_width: float, step: str) -> list[Problem]:
+    if gap_width <= narrow:
+        return []
+    strips, _ = gaps(geometries, gap_width)
+    strips = strips[2 * shapely.area(strips) > narrow * shapely.length(strips)]
+    if not len(strips):
+        return []
+    count = "a narrow gap" if len(strips) == 1 else f"{len(strips)} narrow gaps"
+    message = f"{count} between neighbours"
+    area, hint = float(shapely.area(strips).sum()), "map: {clean: true} closes what it can"
+    steps = (step,) if step else ()
+    return [Problem("coverage", "note", message, steps, "", area, "square map units", hint)]
 
 
 def _beside(pairs: Geometries, narrow: float) -> bool:
@@ -171,21 +214,9 @@ def _matched(geometries: Geometries) -> tuple[Ints, Floats]:
 
     Of an edge in common one polygon lies left and the other right.
     """
-    parts, owner = shapely.get_parts(geometries, return_index=True)
-    rings, part = shapely.get_rings(
-        shapely.orient_polygons(parts, exterior_cw=False), return_index=True
-    )
-    points, ring = shapely.get_coordinates(rings, return_index=True)
-    _, number = np.unique(points[:, 0] + 1j * points[:, 1], return_inverse=True)
-    edge = np.flatnonzero(ring[1:] == ring[:-1])
-    low, high = np.sort([number[edge], number[edge + 1]], axis=0)
-    forward = number[edge] == low
-    order = np.lexsort([forward, high, low])
-    low, high, forward, edge = low[order], high[order], forward[order], edge[order]
-    mates = (low[1:] == low[:-1]) & (high[1:] == high[:-1]) & (forward[1:] != forward[:-1])
-    whose = owner[part[ring[edge]]]
-    pairs = np.sort(np.column_stack([whose[:-1], whose[1:]])[mates], axis=1)
-    lengths = np.hypot(*(points[edge + 1] - points[edge])[1:][mates].T)
+    owners, edges, mates = edges_of(geometries)
+    pairs = np.sort(np.column_stack([owners[:-1], owners[1:]])[mates[1:]], axis=1)
+    lengths = np.hypot(*(edges[1:, 1] - edges[1:, 0])[mates[1:]].T)
     foreign = pairs[:, 0] != pairs[:, 1]
     unique, place = np.unique(pairs[foreign], axis=0, return_inverse=True)
     return unique, np.bincount(place.ravel(), lengths[foreign], len(unique)).astype(np.float64)

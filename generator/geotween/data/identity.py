@@ -9,14 +9,10 @@ from typing import Any
 import shapely
 from shapely.geometry import MultiPolygon
 
-from geotween.data.overlaps import overlapping
+from geotween.data.overlaps import OVERLAPPING, overlapping
 from geotween.data.polygons import REGIONS, Feature, geometries_of
 from geotween.data.problems import Problem
 from geotween.scene.model import Map
-
-# Classes that share more than this of the smaller polygon lie on each other on purpose (nested
-# levels, wind fields); less is a border drawn twice.
-OVERLAPPING = 0.01
 
 
 class TwoClassesError(ValueError):

@@ -14,9 +14,15 @@ from shapely.geometry import MultiPolygon, Polygon
 from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent, name_of
 from geotween.data.problems import Problem, Severity
 
-# Two polygons that share more than this part of the smaller one's area overlap by their shape;
-# less than that is a sliver along a border that was written down twice.
-SLIVER = 1e-6
+# Two polygons that share more than this part of the smaller one's area lie on each other on
+# purpose (nested levels, wind fields, parts of one fire); less is a border that was drawn twice.
+OVERLAPPING = 0.01
+
+# Levels of one thing lie in each other: they share more than this part of the smaller one.
+NESTED = 0.5
+
+# An overlap that is narrower than this share of a pixel everywhere cannot be seen.
+VISIBLE = 0.5
 
 MERGED = (
     "overlapping features without a key were joined",
@@ -26,6 +32,7 @@ CUT = (
     "overlapping features were cut apart",
     "of two features that overlap, the smaller keeps what they share",
 )
+LEVELS = "levels of one thing stay whole where the column that tells them apart is named: class: {}"
 
 Geometries = NDArray[np.object_]
 Ints = NDArray[np.int64]
@@ -39,20 +46,25 @@ class Pairs:
     indices: Ints
     shared: Floats
     share: Floats  # of the smaller one's area
+    common: Geometries  # what they share
 
     def where(self, chosen: NDArray[np.bool_]) -> Pairs:
-        return Pairs(self.indices[chosen], self.shared[chosen], self.share[chosen])
+        return Pairs(
+            self.indices[chosen], self.shared[chosen], self.share[chosen], self.common[chosen]
+        )
 
 
-def separate(features: Sequence[Feature], *, step: str = "") -> tuple[list[Feature], list[Problem]]:
+def separate(
+    features: Sequence[Feature], *, step: str = "", pixel: float = 0.0, columns: Sequence[str] = ()
+) -> tuple[list[Feature], list[Problem]]:
     """Features that share no area, and what was changed for it.
 
-    Features without a key that overlap and have the same class become one, which keeps the name
-    and the position of the first. Of all others the smaller keeps what they share (of two that
-    are equally large the later one), and the larger loses it. Overlaps thinner than
-    ``RELATIVE_TOLERANCE`` of the extent are noise and stay. Where features are cut, both sides of
-    the cut have the same vertices, and so have the neighbours that touch it. A feature that need
-    not change comes back with the very geometry it had.
+    Features without a key, of the same class, become one where they share more than
+    ``OVERLAPPING`` of the smaller; it keeps the name and the position of the first. Of all others
+    the smaller keeps what they share (of two that are equally large the later one), and the larger
+    loses it. Overlaps thinner than ``RELATIVE_TOLERANCE`` of the extent are noise and stay. Where
+    features are cut, both sides of the cut have the same vertices, and so have the neighbours that
+    touch it. A feature that need not change comes back with the very geometry it had.
 
     Parameters
     ----------
@@ -60,13 +72,17 @@ def separate(features: Sequence[Feature], *, step: str = "") -> tuple[list[Featu
         Valid geometries, in any units.
     step
         The step's label, for the problems.
+    pixel
+        The length of a pixel, in the data's units.
+    columns
+        Attributes that may tell levels apart, for the hint where features without a class nest.
 
     Returns
     -------
     features, problems
         One problem (kind ``overlap``) each for all merges and for all cuts of the step, with the
-        area shared, and one for every feature of which nothing is left. A warning where a pair
-        shares more than ``SLIVER`` of the smaller one, else a note.
+        area shared, and one for every feature of which nothing is left. A note where every overlap
+        is narrower than ``VISIBLE`` of a pixel, else a warning.
 
     Notes
     -----
@@ -86,14 +102,18 @@ def separate(features: Sequence[Feature], *, step: str = "") -> tuple[list[Featu
 
     one_area = _same_area(features)[pairs.indices]
     merged = (one_area[:, 0] == one_area[:, 1]) & (one_area[:, 0] >= 0)
-    groups = _connected(pairs.where(merged).indices, len(features))
+    groups = _connected(pairs.indices[merged & (pairs.share > OVERLAPPING)], len(features))
+    merged = groups[pairs.indices[:, 0]] == groups[pairs.indices[:, 1]]
     involved = _with_neighbours(pairs.indices, geometries, tree)
     areas = _arranged(geometries[involved], groups[involved], thinnest)
 
     steps = (step,) if step else ()
     names = [name_of(f, index) for index, f in enumerate(features)]
-    problems = _told(pairs.where(merged), *MERGED, names, steps)
-    problems += _told(pairs.where(~merged), *CUT, names, steps)
+    problems = []
+    for chosen, (what, hint) in ((pairs.where(merged), MERGED), (pairs.where(~merged), CUT)):
+        levels = _levels(chosen, features, columns)
+        hint = f"{hint}; {LEVELS.format(levels)}" if levels else hint
+        problems += _told(chosen, what, hint, names, steps, VISIBLE * pixel)
     kept = []
     for index, feature in enumerate(features):
         if groups[index] != index:
@@ -126,7 +146,7 @@ def overlapping(geometries: Geometries, tree: shapely.STRtree) -> Pairs:
     invalid = ~shapely.is_empty(shapely.coverage_invalid_edges(geometries))
     seen = np.zeros(len(geometries), dtype=bool)
     found = [np.empty((0, 2), dtype=np.int64)]
-    shares = [np.empty(0)]
+    commons = [np.empty(0, dtype=object)]
     front = np.flatnonzero(invalid)
     while len(front):
         mine, others = tree.query(geometries[front])
@@ -137,16 +157,15 @@ def overlapping(geometries: Geometries, tree: shapely.STRtree) -> Pairs:
         seen[front] = True
         one, other = geometries[pairs.T]
         common = shapely.intersection(one, other, grid_size=grid)
-        shared = shapely.area(common)
         real = ~_noise(common, thinnest)
         found.append(pairs[real])
-        shares.append(shared[real])
+        commons.append(common[real])
         front = np.setdiff1d(pairs[real], np.flatnonzero(seen))
-    indices, shared = np.concatenate(found), np.concatenate(shares)
+    indices, common = np.concatenate(found), np.concatenate(commons)
     order = np.lexsort(indices.T[::-1])
-    indices, shared = indices[order], shared[order]
-    smaller = shapely.area(geometries)[indices].min(axis=1)
-    return Pairs(indices, shared, shared / smaller)
+    indices, common = indices[order], common[order]
+    shared, smaller = shapely.area(common), shapely.area(geometries)[indices].min(axis=1)
+    return Pairs(indices, shared, shared / smaller, common)
 
 
 def _same_area(features: Sequence[Feature]) -> Ints:
@@ -243,15 +262,39 @@ def _ranks(sizes: Floats) -> Ints:
     return ranks
 
 
+def _levels(pairs: Pairs, features: Sequence[Feature], columns: Sequence[str]) -> str:
+    """The columns by which all features without a class differ that lie in each other."""
+    nested = pairs.indices[pairs.share > NESTED].tolist()
+    both = [(features[one], features[other]) for one, other in nested]
+    if not both or any(f.class_ is not None for pair in both for f in pair):
+        return ""
+    apart = [
+        column
+        for column in columns
+        if all(one.attributes.get(column) != other.attributes.get(column) for one, other in both)
+    ]
+    return " (or ".join([", ".join(part) for part in (apart[:1], apart[1:]) if part]) + (
+        ")" if len(apart) > 1 else ""
+    )
+
+
 def _told(
-    pairs: Pairs, what: str, hint: str, names: Sequence[str], steps: tuple[str, ...]
+    pairs: Pairs, what: str, hint: str, names: Sequence[str], steps: tuple[str, ...], least: float
 ) -> list[Problem]:
     if not len(pairs.indices):
         return []
     one, other = (names[i] for i in pairs.indices[pairs.shared.argmax()])
     most = f"{one} and {other}" if len(pairs.indices) == 1 else f"most of all {one} and {other}"
     count = "1 pair" if len(pairs.indices) == 1 else f"{len(pairs.indices)} pairs"
-    severity: Severity = "warning" if (pairs.share > SLIVER).any() else "note"
+    severity: Severity = "warning" if _any_wider(pairs.common, least) else "note"
     area = float(pairs.shared.sum())
     message = f"{count} of {what}: {most}"
     return [Problem("overlap", severity, message, steps, "", area, "square map units", hint)]
+
+
+def _any_wider(polygons: Geometries, width: float) -> bool:
+    """Whether some polygon has a place as wide as a width."""
+    # The mean width of a strip, its area by half its outline, is exceeded somewhere.
+    if (shapely.area(polygons) >= width * shapely.length(polygons) / 2).any():
+        return True
+    return bool((~shapely.is_empty(shapely.buffer(polygons, -width / 2))).any())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -20,6 +20,8 @@ from geotween.scene.model import Map
 # Widest gap along a common border that cleaning closes, in px: what is wider can be seen, and may
 # be meant.
 WIDEST_GAP = 2.0
+
+SHOWN = 8  # steps listed in a message
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,14 +43,16 @@ def tidy(
 ) -> Tidied:
     """Disjoint, clean and simplified features; ``scale`` is in px for a unit of the data."""
     layered, layers = class_layers(steps, frame)
+    columns = _recurring(steps)
     problems: list[Problem] = []
     parts: list[list[Feature]] = []  # those of the first step, layer by layer, then of the second
     for label, step in zip(labels, layered, strict=True):
         for layer in layers:
             of_layer = [feature for feature in step if feature.layer == layer]
-            part, found = _disjoint(of_layer, label, frame, scale)
+            part, found = _disjoint(of_layer, label, frame, scale, columns)
             parts.append(part)
             problems += found
+    problems = _told_once(problems)
     sets = [geometries_of(part) for part in parts]
     if frame.min_area:
         names = [label for label in labels for _ in layers]
@@ -76,15 +80,46 @@ def tidy(
 
 
 def _disjoint(
-    features: list[Feature], label: str, frame: Map, scale: float
+    features: list[Feature], label: str, frame: Map, scale: float, columns: Sequence[str]
 ) -> tuple[list[Feature], list[Problem]]:
     if len(features) < 2:
         return features, []
-    if frame.clean and looks_like_coverage(geometries_of(features)):
-        gap = WIDEST_GAP / scale
+    gap = WIDEST_GAP / scale
+    if frame.clean and looks_like_coverage(geometries_of(features), gap_width=gap):
         return clean_coverage(features, gap_width=gap, snapping=-1, step=label)
-    apart, problems = separate(features, step=label)
-    return apart, problems + coverage_faults(geometries_of(apart), step=label)
+    apart, problems = separate(features, step=label, pixel=1 / scale, columns=columns)
+    shapes = geometries_of(apart)
+    return apart, problems + coverage_faults(shapes, gap_width=gap, step=label)
+
+
+def _recurring(steps: Sequence[Sequence[Feature]]) -> list[str]:
+    """The attributes whose values recur from step to step, and are more than one, as levels are."""
+    values: dict[str, list[str]] = {}
+    for step in steps:
+        for feature in step:
+            for column, value in feature.attributes.items():
+                values.setdefault(column, []).append(str(value))
+    return [name for name, found in values.items() if 1 < len(set(found)) <= len(found) / 2]
+
+
+def _told_once(problems: Sequence[Problem]) -> list[Problem]:
+    """Problems; what befell overlapping features in several steps is told once, in the worst."""
+    groups: dict[object, list[Problem]] = {}
+    for number, problem in enumerate(problems):
+        alike = problem.kind == "overlap" and not problem.piece
+        name = (problem.message.partition(":")[0].partition(" of ")[2], problem.severity)
+        groups.setdefault(name if alike else number, []).append(problem)
+    return [group[0] if len(group) == 1 else _in_all(group) for group in groups.values()]
+
+
+def _in_all(group: Sequence[Problem]) -> Problem:
+    worst = max(group, key=lambda problem: problem.measure)
+    others = [problem.steps[0] for problem in group if problem is not worst]
+    names = ", ".join(others[:SHOWN]) + (", …" if len(others) > SHOWN else "")
+    count = "1 other step" if len(others) == 1 else f"{len(others)} other steps"
+    total = sum(problem.measure for problem in group)
+    message = f"{worst.message}, and less in {count}: {names}"
+    return replace(worst, message=message, measure=total, unit=f"{worst.unit} in all")
 
 
 def _without_small(
