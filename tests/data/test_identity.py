@@ -165,3 +165,18 @@ def test_layers_of_a_scene(write_scene: WriteScene) -> None:
     found = load(write_scene(f"title: t\nsteps: [polygons: [{step}], polygons: [{step}]]\n"))
     assert found.layer_order == ("low", "high")
     assert found.steps[0].regions.in_layer("low").polygons[0].area == 16  # nothing is cut out
+
+
+def test_a_class_that_stands_alone_for_long_lies_above_the_larger_one() -> None:
+    inner, outer = box(4, 4, 5, 5), box(0, 0, 9, 9)
+    alone = [Feature(inner, class_="inner")]
+    both = [Feature(inner, class_="inner"), Feature(outer, class_="outer")]
+    _, order = class_layers([*[alone] * 100, both], Map())
+    assert order == ("outer", "inner")
+
+
+def test_a_class_may_be_called_as_the_layer_of_those_without_one() -> None:
+    step = [Feature(box(0, 0, 9, 9)), Feature(box(1, 1, 5, 5), class_="regions")]
+    (layered,), order = class_layers([step], Map(classes="layers"))
+    assert [f.layer for f in layered] == ["", "regions"]
+    assert order == ("", "regions")

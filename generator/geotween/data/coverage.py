@@ -9,11 +9,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geotween.data.gaps import gaps
 from geotween.data.nodes import edges_of, noded
 from geotween.data.overlaps import crossing_grid
 from geotween.data.polygons import RELATIVE_TOLERANCE, Feature, extent, name_of
 from geotween.data.problems import Problem, Severity
-from geotween.data.small import gaps
 
 # Two polygons that run along each other for this part of the shorter boundary have a border in
 # common; by chance polygons meet at points, or along a piece of a straight edge.

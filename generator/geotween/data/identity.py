@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -49,8 +50,8 @@ def class_layers(
 ) -> tuple[list[list[Feature]], tuple[str, ...]]:
     """The layer of each feature, and the order of the layers, the lowest first.
 
-    Without ``class_order`` a class lies above those that cover more, so that of nested classes
-    the inner one is seen.
+    Without ``class_order`` a class lies above those that cover more in the steps that they are
+    in, so that of nested classes the inner one is seen.
     """
     classes = dict.fromkeys(f.class_ for step in steps for f in step if f.class_ is not None)
     apart = frame.classes == "layers" or (
@@ -58,19 +59,20 @@ def class_layers(
     )
     if not apart or not classes:
         return [list(step) for step in steps], (REGIONS,)
-    covered = dict.fromkeys(classes, 0.0)
+    covered: dict[str, list[float]] = {name: [] for name in classes}
     for step in steps:
-        for feature in step:
-            if feature.class_ is not None:
-                covered[feature.class_] += feature.geometry.area
-    by_area = sorted(classes, key=lambda name: -covered[name])
+        for name in {feature.class_ for feature in step} - {None}:
+            areas = [f.geometry.area for f in step if f.class_ == name]
+            covered[str(name)].append(math.fsum(areas))
+    by_area = sorted(classes, key=lambda name: -math.fsum(covered[name]) / len(covered[name]))
     named = [name for name in frame.class_order if name in classes]
     order = [*named, *(name for name in by_area if name not in named)]
+    unclassed = REGIONS if REGIONS not in classes else ""  # a class may be called so
     layered = [
-        [replace(f, layer=REGIONS if f.class_ is None else f.class_) for f in step]
+        [replace(f, layer=unclassed if f.class_ is None else f.class_) for f in step]
         for step in steps
     ]
-    lowest = [REGIONS] if any(f.class_ is None for step in steps for f in step) else []
+    lowest = [unclassed] if any(f.class_ is None for step in steps for f in step) else []
     return layered, tuple(lowest + order)
 
 

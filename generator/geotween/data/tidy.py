@@ -45,6 +45,10 @@ def tidy(
     layered, layers = class_layers(steps, frame)
     columns = _recurring(steps)
     problems: list[Problem] = []
+    if frame.classes == "auto" and len(layers) > 1:
+        message = f"classes lie on each other: each is a layer, from below {_listed(layers)}"
+        hint = "map: {classes: together} cuts them apart, {class_order: […]} orders them"
+        problems.append(Problem("layers", "note", message, hint=hint))
     parts: list[list[Feature]] = []  # those of the first step, layer by layer, then of the second
     for label, step in zip(labels, layered, strict=True):
         for layer in layers:
@@ -115,7 +119,7 @@ def _told_once(problems: Sequence[Problem]) -> list[Problem]:
 def _in_all(group: Sequence[Problem]) -> Problem:
     worst = max(group, key=lambda problem: problem.measure)
     others = [problem.steps[0] for problem in group if problem is not worst]
-    names = ", ".join(others[:SHOWN]) + (", …" if len(others) > SHOWN else "")
+    names = _listed(others)
     count = "1 other step" if len(others) == 1 else f"{len(others)} other steps"
     total = sum(problem.measure for problem in group)
     message = f"{worst.message}, and less in {count}: {names}"
@@ -151,3 +155,7 @@ def _apart(shapes: Shapes) -> list[Shapes]:
         if shapely.coverage_is_valid(shapes)
         else [shapes[i : i + 1] for i in range(len(shapes))]
     )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names[:SHOWN]) + (", …" if len(names) > SHOWN else "")
