@@ -17,7 +17,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from geotween.data.hotspots import CELLS_PER_BANDWIDTH, Grid, Hotspots, grid_over, hotspots
+from geotween.data.steps.hotspots import CELLS_PER_BANDWIDTH, Grid, Hotspots, grid_over, hotspots
 
 POINTS, PERIODS, PLACES = 100_000, 12, 40
 LEVELS = (0.1, 0.3, 0.6)

@@ -21,8 +21,8 @@ import shapely
 from numpy.typing import NDArray
 
 from geotween.data.polygons import Feature
-from geotween.data.repair import repair
-from geotween.data.simplify import simplify
+from geotween.data.tidy.repair import repair
+from geotween.data.tidy.simplify import simplify
 
 Shapes = NDArray[np.object_]
 PIXELS = (0.25, 0.5, 1, 2, 5, 10, 20)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from shapely.affinity import scale
 from shapely.geometry import MultiPoint, MultiPolygon, Polygon, mapping
 
-from geotween.data.parse import Parser
 from geotween.data.polygons import Feature
+from geotween.data.read.parse import Parser
 from geotween.scene.document import Location
 
 Told = list[tuple[Location, str, str]]

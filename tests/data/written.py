@@ -20,7 +20,7 @@ from shapely.affinity import translate
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon
 
 from geotween.data.load import load
-from geotween.data.sources import Held, SourceReader
+from geotween.data.read.sources import Held, SourceReader
 from geotween.scene.document import Document
 from geotween.scene.errors import SceneError
 from tests.data.shapes import as_geojson, polygons

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from geotween.data.polygons import PolygonSet
 from geotween.data.problems import Problem
-from geotween.data.series import Member
+from geotween.data.steps.series import Member
 from geotween.scene.model import SceneFile
 
 SHOWN = 8  # names listed in a hint

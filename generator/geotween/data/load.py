@@ -10,9 +10,7 @@ from typing import Any
 
 from geotween.data.checks import doubts
 from geotween.data.frame import check_size, pixels_per_unit
-from geotween.data.identity import TwoClassesError, merge_keys
-from geotween.data.nodes import noded_features
-from geotween.data.place import crs_of_all, place
+from geotween.data.globe.place import crs_of_all, place
 from geotween.data.polygons import (
     Feature,
     PolygonSet,
@@ -23,11 +21,13 @@ from geotween.data.polygons import (
     with_geometries,
 )
 from geotween.data.problems import Problem, condensed, in_kilometres
-from geotween.data.series import Member
-from geotween.data.sources import Held, SourceReader
-from geotween.data.steps import members_of, place_of
-from geotween.data.tidy import tidy
-from geotween.data.valid import mended, valid_features
+from geotween.data.read.sources import Held, SourceReader
+from geotween.data.steps.series import Member
+from geotween.data.steps.steps import members_of, place_of
+from geotween.data.tidy.identity import TwoClassesError, merge_keys
+from geotween.data.tidy.nodes import noded_features
+from geotween.data.tidy.tidy import tidy
+from geotween.data.tidy.valid import mended, valid_features
 from geotween.scene.document import Document, read_text
 from geotween.scene.errors import SceneError
 from geotween.scene.model import Layer, SceneFile

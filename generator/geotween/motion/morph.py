@@ -26,7 +26,7 @@ from geotween.data.polygons import (
     too_far,
 )
 from geotween.data.problems import Problem
-from geotween.data.repair import repair
+from geotween.data.tidy.repair import repair
 from geotween.motion import correspond as correspondences
 from geotween.motion import divide as divisions
 from geotween.motion import match as matchings

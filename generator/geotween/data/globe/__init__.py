@@ -1,0 +1,1 @@
+"""The globe and the plane: coordinate reference systems and projections."""

@@ -1,0 +1,1 @@
+"""Reading: the polygons that a scene names, out of its text or of files."""

@@ -1,0 +1,1 @@
+"""Steps: out of times and places, files with times, or points."""

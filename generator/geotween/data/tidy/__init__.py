@@ -1,0 +1,1 @@
+"""Tidying: valid, disjoint, clean and simple polygon sets."""
