@@ -13,7 +13,7 @@ import geotween
 from geotween.export.build import plan_scene
 from geotween.export.keyframes import Keyframes, keyframes
 from geotween.export.page import keyframes_json
-from geotween.export.paint import PALETTE
+from geotween.export.paint import PALETTE, RAMP
 from geotween.export.svg import animated_svg
 from geotween.export.words import words
 
@@ -117,3 +117,22 @@ def test_what_does_not_change_is_one_path_of_the_svg_for_all_time(write_scene: W
     svg = animated_svg(found, "t", "", words(found, "t", ""))
     assert svg.count('class="region"') == 1
     assert "animate" not in svg.split('class="words"')[0]
+
+
+NESTED = (
+    "steps: [{polygons: [{class: much, polygon: [[4, 4], [5, 4], [5, 5]]}, "
+    "{class: little, polygon: [[0, 0], [9, 0], [9, 9], [0, 9]]}]}, {polygons: []}]"
+)
+
+
+def test_nested_classes_are_layers_from_light_to_dark(write_scene: Write) -> None:
+    found = frames(write_scene, NESTED)
+    slots = [slot for slot in found.slots() if slot.kind == "region"]
+    assert [slot.group.layer for slot in slots] == ["little", "much"]
+    fills = {shape.slot: shape.paints[0].fill for shape in found.spans[0][1]}
+    assert [fills[slot] for slot in slots] == [RAMP[0], RAMP[-1]]
+
+
+def test_a_ghost_lies_above_all_layers(write_scene: Write) -> None:
+    found = frames(write_scene, f"motion: {{ghost: origin}}\n{NESTED}")
+    assert [slot.group.layer for slot in found.slots()] == ["little", "much", "ghost"]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from geotween.data.polygons import Identity
 from geotween.scene.model import Style, StyleRule
 
@@ -13,7 +15,7 @@ from geotween.scene.model import Style, StyleRule
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7", "#f0e442")
 STROKE, WIDTH, OPACITY = "#ffffff", 0.75, 1.0
 # From little to much: classes that lie on each other are degrees of one thing.
-RAMP = ("#b3d7ec", "#00304f")
+RAMP = ("#b3d7ec", "#0072b2", "#00304f")
 
 
 @dataclass(frozen=True)
@@ -77,11 +79,8 @@ class Painter:
 
 
 def _shades(count: int) -> list[str]:
-    """Colours from one end of the ramp to the other, in equal steps."""
-    ends = [[int(colour[i : i + 2], 16) for i in (1, 3, 5)] for colour in RAMP]
-    shades = []
-    for number in range(count):
-        share = number / (count - 1)
-        mixed = (round(a + share * (b - a)) for a, b in zip(*ends, strict=True))
-        shades.append("#" + "".join(f"{part:02x}" for part in mixed))
-    return shades
+    """Colours along the ramp, from one end to the other in equal steps."""
+    stops = np.array([[int(colour[i : i + 2], 16) for i in (1, 3, 5)] for colour in RAMP])
+    places = np.linspace(0, len(RAMP) - 1, count)
+    mixed = [np.interp(places, range(len(RAMP)), channel) for channel in stops.T]
+    return ["#" + "".join(f"{round(part):02x}" for part in shade) for shade in np.transpose(mixed)]
