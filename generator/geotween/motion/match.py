@@ -18,6 +18,7 @@ from geotween.motion.divide import Division
 from geotween.motion.rings import MatchedPiece, Rings, Vertices, rings_of
 from geotween.motion.seams import seam_edges
 from geotween.motion.tracks import SEAM_AT_ORIGIN, SEAM_AT_TARGET
+from geotween.motion.trajectory import trajectory
 
 # Two open rings (n, 2) and (m, 2) in; for each the places of its vertices along itself out: two
 # equally long, cyclically rising arrays of ring parameters, k + s for s of the way along edge k.
@@ -96,7 +97,7 @@ def rotation(one: Vertices, other: Vertices) -> tuple[NDArray[np.float64], NDArr
     return here, np.roll(there, -turn)
 
 
-TECHNIQUES: Mapping[str, Technique] = {"rotation": rotation}
+TECHNIQUES: Mapping[str, Technique] = {"rotation": rotation, "trajectory": trajectory}
 
 
 def points_at(ring: Vertices, places: NDArray[np.float64]) -> Vertices:

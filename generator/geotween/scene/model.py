@@ -174,7 +174,7 @@ class Motion(_Part):
     method: Literal["auto", "paper"] = "auto"
     correspondence: Literal["intersects", "key"] | None = None
     division: Literal["voronoi"] | None = None
-    matching: Literal["rotation"] | None = None
+    matching: Literal["rotation", "trajectory"] | None = None
     easing: Easing = "ease-in-out"
     ghost: Literal["none", "origin"] = Field(
         "none", description="origin keeps the origin's outline during the transition"
