@@ -249,7 +249,7 @@ def test_same_scene_gives_the_same_bytes(write_scene: WriteScene, tmp_path: Path
 def test_terminal_that_has_no_arrow_still_gets_the_rest(write_scene: WriteScene) -> None:
     result = process("check", write_scene(), PYTHONIOENCODING="cp1252")
     assert (result.returncode, result.stderr) == (0, b"")
-    assert b"1 ? 2: partition error" in result.stdout
+    assert b"1 ? 2: proved, partition error" in result.stdout
 
 
 # Whole or not at all
@@ -313,3 +313,13 @@ def test_files_get_the_permissions_of_new_files(write_scene: WriteScene, tmp_pat
     (tmp_path / "new").touch()
     usual = (tmp_path / "new").stat().st_mode
     assert {(tmp_path / "out" / name).stat().st_mode for name in files(tmp_path / "out")} == {usual}
+
+
+def test_check_as_json_says_what_is_proved(write_scene: WriteScene) -> None:
+    result = run("check", "--json", write_scene())
+    (told,) = json.loads(result.stdout)
+    assert told["steps"] == ["1", "2"]
+    (transition,) = told["transitions"]
+    assert (transition["steps"], transition["valid"]) == (["1", "2"], True)
+    assert told["problems"] == []
+    assert result.exit_code == 0

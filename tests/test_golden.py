@@ -74,7 +74,7 @@ def test_the_gallery_has_splits_merges_births_deaths_and_holes() -> None:
     for path in SCENES:
         scene = geotween.load(path)
         for morph in plan_scene(scene)[0]:
-            origin, target = np.concatenate([d.indices for d in morph.divisions]).T
+            origin, target = np.concatenate([layer.division.indices for layer in morph.layers]).T
             seen |= {"birth"} if (origin < 0).any() else set()
             seen |= {"death"} if (target < 0).any() else set()
             seen |= {"split"} if np.bincount(origin[origin >= 0], minlength=1).max() > 1 else set()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -16,7 +17,7 @@ from geotween import __version__
 if TYPE_CHECKING:
     from geotween.data.load import Scene
     from geotween.data.problems import Problem
-    from geotween.export.build import Rendered
+    from geotween.export.build import Rendered, TransitionReport
     from geotween.scene.errors import Fault
 
 DONE, PROBLEMS, BAD_SCENE = 0, 1, 2
@@ -119,26 +120,38 @@ def build(
 @_SCENES
 @_SANDBOX
 @_QUIET
-def check(scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool) -> None:
-    """Validate scenes and plan their motion; print problems and measures.
+@click.option("--json", "as_json", is_flag=True, help="Print all of it as JSON.")
+def check(scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool, as_json: bool) -> None:
+    """Validate scenes, plan their motion and prove it; print problems and measures.
+
+    A transition is proved where no polygon crosses itself or another one at any time.
 
     \b
-    Example:
+    Examples:
       geotween check scenes/*.yaml
+      geotween check fire.yaml --json
     """
     from geotween.export.build import plan_scene, transition_reports
 
     worst = False
+    told: list[dict[str, object]] = []
     for scene in _load(scenes, sandbox):
         morphs, problems = plan_scene(scene)
+        if as_json:
+            told.append(_as_json(scene, transition_reports(scene, morphs), problems))
+            worst |= any(problem.severity != "note" for problem in problems)
+            continue
         if not quiet:
             click.echo(f"{scene.path}: {len(scene.steps)} steps, {len(morphs)} transitions")
             if scene.projection:
                 click.echo(f"  projection: {scene.projection}")
             for transition in transition_reports(scene, morphs):
+                proved = "proved" if transition.valid else "not proved"
                 measures = ", ".join(f"{k} {v:.3g}" for k, v in transition.measures.items())
-                click.echo(f"  {' → '.join(transition.steps)}: {measures}")
+                click.echo(f"  {' → '.join(transition.steps)}: {proved}, {measures}")
         worst |= _report_problems(problems, quiet=quiet, notes=True)
+    if as_json:
+        click.echo(json.dumps(told, indent=2, ensure_ascii=False))
     raise SystemExit(PROBLEMS if worst else DONE)
 
 
@@ -155,6 +168,18 @@ def schema() -> None:
     from geotween.scene.read import scene_schema
 
     click.echo(json.dumps(scene_schema(), indent=2, ensure_ascii=False))
+
+
+def _as_json(
+    scene: Scene, transitions: Sequence[TransitionReport], problems: Sequence[Problem]
+) -> dict[str, object]:
+    return {
+        "scene": str(scene.path),
+        "steps": [step.label for step in scene.steps],
+        "projection": scene.projection,
+        "transitions": [asdict(transition) for transition in transitions],
+        "problems": [asdict(problem) for problem in problems],
+    }
 
 
 def _load(paths: Sequence[Path], sandbox: Path | None) -> list[Scene]:

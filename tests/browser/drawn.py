@@ -159,6 +159,7 @@ def morphs(scene: Scene) -> list[list[geotween.Morph]]:
                 correspondence=motion.correspondence,
                 division=motion.division,
                 matching=motion.matching,
+                radius=motion.radius,
             )
             for layer in scene.layer_order
         ]

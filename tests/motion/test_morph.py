@@ -13,7 +13,7 @@ from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon, box
 
 import geotween
-from geotween.motion.morph import resolve
+from geotween.motion.morph import Techniques, resolve
 from tests.motion.shapes import blobs, polygon_sets, star, tiles
 
 
@@ -92,7 +92,7 @@ class TestKeys:
 
     def test_where_both_live_on_it_bears_the_origins(self) -> None:
         both = {"a": box(0, 0, 4, 4), "b": box(4, 0, 8, 4)}
-        m = geotween.morph(both, both)
+        m = geotween.morph(both, both, "paper")
         assert [(p.origin_key, p.target_key) for p in m.pairs] == [
             ("a", "a"), ("a", "b"), ("b", "a"), ("b", "b"),
         ]  # fmt: skip
@@ -152,13 +152,26 @@ def test_a_polygon_alone_is_no_set() -> None:
         geotween.morph(box(0, 0, 1, 1), [])  # type: ignore[arg-type]
 
 
-def test_nothing_is_called_valid_that_was_not_proved() -> None:
-    m = geotween.morph([box(0, 0, 1, 1)], [box(0, 0, 1, 1)])
-    assert m.certificate.valid is False
+@pytest.mark.parametrize("method", ["paper", "auto"])
+def test_what_rests_is_proved(method: str) -> None:
+    m = geotween.morph([box(0, 0, 1, 1)], [box(0, 0, 1, 1)], method)
+    assert m.certificate.valid is True
+    assert m.certificate.problems == ()
+
+
+def test_two_that_swap_places_overlap_on_the_way_and_are_named() -> None:
+    left, right = box(0, 0, 2, 2), box(6, 0, 8, 2)
+    m = geotween.morph({"a": left, "b": right}, {"a": right, "b": left}, correspondence="key")
+    assert not m.certificate.valid
+    (problem,) = m.certificate.problems
+    assert str(problem).startswith("warning: a and b overlap from 33% to 67% of the way (")
+    assert m.certificate.measures["crossing"] == pytest.approx(1 / 3)
 
 
 def test_each_stage_can_be_named_on_its_own() -> None:
-    assert resolve("auto") == resolve("paper")
+    assert resolve("paper") == Techniques("intersects", "voronoi", "rotation")
+    assert resolve("auto") == Techniques("auto", "voronoi", "rotation")
+    assert resolve("auto", matching="trajectory").matching == "trajectory"
     assert resolve("paper", correspondence="key").correspondence == "key"
     with pytest.raises(ValueError, match="unknown division 'scissors'; expected one of voronoi"):
         resolve("paper", division="scissors")
@@ -194,8 +207,20 @@ def areas_of_pieces(polygons: list[Polygon]) -> list[float]:
 @pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
 @pytest.mark.parametrize("sets", SETS.values(), ids=SETS)
 def test_what_is_done_to_the_sets_is_done_to_the_frames(sets: Sets, change: Change) -> None:
-    before = geotween.morph(*sets)
-    after = geotween.morph(*([change(p) for p in polygons] for polygons in sets))
+    assert_changes_alike(sets, change, "rotation")
+
+
+# A reflection turns the direction of rings round, and trajectories depend on it a little.
+@pytest.mark.parametrize("name", [name for name in CHANGES if name != "reflected"])
+@pytest.mark.parametrize("sets", SETS.values(), ids=SETS)
+def test_what_is_done_to_the_sets_is_done_to_the_trajectories(sets: Sets, name: str) -> None:
+    assert_changes_alike(sets, CHANGES[name], "trajectory")
+
+
+def assert_changes_alike(sets: Sets, change: Change, matching: str) -> None:
+    before = geotween.morph(*sets, matching=matching)
+    changed_sets = ([change(p) for p in polygons] for polygons in sets)
+    after = geotween.morph(*changed_sets, matching=matching)
     for t in (0.0, 0.25, 0.5, 1.0):
         changed = [change(p) for p in before.frame(t).polygons]
         drawn = after.frame(t).polygons

@@ -62,7 +62,7 @@ def test_both_sides_of_a_seam_have_the_same_vertices(
     if any(p.kind == "open seam" for p in m.problems):
         return  # said so: in symmetric shapes vertices may chase each other round
     sides: dict[object, int] = {}
-    for track, owner in zip(m.tracks, m.divisions[0].indices[:, end], strict=True):
+    for track, owner in zip(m.tracks, m.layers[0].division.indices[:, end], strict=True):
         for edge in seam_edges(track, end):
             sides[owner, edge] = sides.get((owner, edge), 0) + 1
     extent = np.ptp([c for p in [*origin, *target] for c in p.exterior.coords])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 Severity = Literal["note", "warning", "error"]
+LEAST_SHARE = 1e-4  # what is less is not told apart
 LENGTH, AREA = "map units", "square map units"
 
 
@@ -33,6 +34,8 @@ class Problem:
         subject = ", ".join(part for part in (where, self.piece) if part)
         share = self.unit.startswith("of ")
         number = f"{self.measure:.2%}" if share else f"{self.measure:,.4g}"
+        if share and 0 < self.measure < LEAST_SHARE:
+            number = f"less than {LEAST_SHARE:.2%}"
         amount = f" ({number} {self.unit})" if self.unit else ""
         hint = f"; {self.hint}" if self.hint else ""
         return f"{self.severity}: {subject + ': ' if subject else ''}{self.message}{amount}{hint}"

@@ -26,10 +26,14 @@ INDEX = "index.html"
 
 @dataclass(frozen=True)
 class TransitionReport:
-    """What happened between two steps: their labels, the pieces that moved, and measures."""
+    """What happened between two steps: their labels, the pieces that moved, and measures.
+
+    ``valid`` tells whether it was proved that polygons cross nowhere on the way.
+    """
 
     steps: tuple[str, str]
     pieces: int
+    valid: bool
     measures: Mapping[str, float]
 
 
@@ -92,7 +96,9 @@ def build(
 def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
     """The motion of each transition, and all problems with their steps named."""
     motion = scene.model.motion
-    techniques = resolve(motion.method, motion.correspondence, motion.division, motion.matching)
+    techniques = resolve(
+        motion.method, motion.correspondence, motion.division, motion.matching, motion.radius
+    )
     morphs, problems = [], list(scene.problems)
     for before, after in zip(scene.steps[:-1], scene.steps[1:], strict=True):
         planned = plan(before.regions, after.regions, techniques)
@@ -104,9 +110,14 @@ def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
 
 
 def transition_reports(scene: Scene, morphs: Sequence[Morph]) -> tuple[TransitionReport, ...]:
-    """The measures of each transition."""
+    """What is proved and measured of each transition."""
     return tuple(
-        TransitionReport((before.label, after.label), len(m.tracks), m.certificate.measures)
+        TransitionReport(
+            (before.label, after.label),
+            len(m.tracks),
+            m.certificate.valid,
+            m.certificate.measures,
+        )
         for before, after, m in zip(scene.steps[:-1], scene.steps[1:], morphs, strict=True)
     )
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 
 from geotween.data.problems import Problem
 from geotween.motion.divide import Division
+from geotween.motion.sweep import Proof, Violation, sweep
+from geotween.motion.tracks import Track
 
 Objects = NDArray[np.object_]
 
@@ -18,12 +21,33 @@ Objects = NDArray[np.object_]
 PARTITION_TOLERANCE = 1e-9
 
 
+@dataclass(frozen=True, eq=False)
+class LayerMotion:
+    """The motion of one layer: its tracks, and the division behind them.
+
+    ``near`` are the tracks where coordinates have digits to spare, which may be elsewhere than
+    where they are drawn.
+    """
+
+    layer: str
+    tracks: tuple[Track, ...]
+    division: Division
+    problems: tuple[Problem, ...]
+    near: tuple[Track, ...]
+
+    @cached_property
+    def proof(self) -> Proof:
+        """What is wrong with the tracks, at any t in [0, 1]."""
+        return sweep(self.near)
+
+
 @dataclass(frozen=True)
 class Certificate:
     """What was proved about a transition, what was measured, and what was met on the way.
 
-    ``valid`` is True only where the promise was proved over continuous time. This version proves
-    nothing yet, so it is False throughout: it means not proved, not wrong.
+    ``valid`` is True where it was proved, for all t in [0, 1], that every polygon is simple and
+    that no two of a layer overlap (``motion/sweep.py`` says up to which rounding), and that the
+    pieces make up their polygons.
     """
 
     valid: bool
@@ -31,12 +55,14 @@ class Certificate:
     measures: dict[str, float]
 
 
-def certify(divisions: Sequence[Division], problems: tuple[Problem, ...]) -> Certificate:
-    """Measure how exactly the pieces of each layer's division make up their polygons.
+def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Certificate:
+    """Prove or disprove that polygons cross nowhere, and measure how exact the pieces are.
 
     ``partition error`` is the largest area, relative to its polygon, by which the pieces of one
-    polygon miss or exceed it; ``pieces`` and ``mends`` are counts.
+    polygon miss or exceed it; ``pieces`` and ``mends`` are counts; ``crossing`` is the share of
+    time in which some polygon crosses itself or another one.
     """
+    divisions = [layer.division for layer in layers]
     sides = [
         side
         for division in divisions
@@ -51,14 +77,68 @@ def certify(divisions: Sequence[Division], problems: tuple[Problem, ...]) -> Cer
         "partition error": error,
         "pieces": float(sum(len(division.indices) for division in divisions)),
         "mends": float(sum(len(division.problems) for division in divisions)),
+        "crossing": _time_of(v for layer in layers for v in layer.proof.violations),
     }
+    met = [problem for layer in layers for problem in layer.problems]
     allowed = [_rounding(whole) for whole, _, _ in sides]
-    if any((d > a).any() for d, a in zip(differences, allowed, strict=True)):
+    exact = not any((d > a).any() for d, a in zip(differences, allowed, strict=True))
+    if not exact:
         message = "pieces miss or exceed their polygon"
         hint = "look for slivers in the data"
-        found = Problem("partition", "error", message, (), "", error, "of its area", hint)
-        problems = (*problems, found)
-    return Certificate(False, problems, measures)
+        met.append(Problem("partition", "error", message, (), "", error, "of its area", hint))
+    for layer in layers:
+        met += _crossings(layer)
+    return Certificate(
+        exact and all(layer.proof.clean for layer in layers),
+        (*problems, *met),
+        measures,
+    )
+
+
+def _crossings(layer: LayerMotion) -> list[Problem]:
+    """A problem for each kind of crossing in a layer, that names the worst."""
+    found = []
+    for kind, one, many in (
+        ("overlap", "overlap", "pairs of polygons overlap"),
+        ("self-crossing", "crosses itself", "polygons cross themselves"),
+        ("self-touch", "touches itself", "polygons touch themselves"),
+    ):
+        those = [v for v in layer.proof.violations if v.kind == kind]
+        if not those:
+            continue
+        worst = max(those, key=lambda v: v.area * (v.end - v.start))
+        names = " and ".join(dict.fromkeys(_name(layer.tracks[i]) for i in worst.tracks))
+        pairs = len({v.tracks for v in those})
+        span = f"from {worst.start:.0%} to {worst.end:.0%} of the way"
+        message = f"{names} {one} {span}"
+        if pairs > 1:
+            message = f"{pairs} {many}, most of all {names} {span}"
+        covered = shapely.area(layer.division.origin.polygons).sum()
+        covered = max(covered, shapely.area(layer.division.target.polygons).sum())
+        share = worst.area / covered if covered else 0.0
+        hint = "frames there are not to be trusted; try matching: trajectory, or rotation"
+        found.append(Problem(kind, "warning", message, (), "", share, "of all area", hint))
+    found += [
+        Problem("undecided", "warning", f"not proved: {one.reason}")
+        for one in layer.proof.undecided
+    ]
+    return found
+
+
+def _name(track: Track) -> str:
+    identity = track.identity
+    if identity.name or identity.keyed:
+        return identity.name or str(identity.key)
+    return f"polygon {identity.key + 1}" if isinstance(identity.key, int) else str(identity.key)
+
+
+def _time_of(violations: Iterable[Violation]) -> float:
+    """The share of time that some intervals cover together."""
+    covered, until = 0.0, 0.0
+    for start, end in sorted((v.start, v.end) for v in violations):
+        covered += max(0.0, end - max(start, until))
+        until = max(until, end)
+    return covered
 
 
 def _rounding(whole: Objects) -> NDArray[np.float64]:

@@ -27,12 +27,11 @@ from geotween.data.polygons import (
 )
 from geotween.data.problems import Problem
 from geotween.data.tidy.repair import repair
-from geotween.motion import correspond as correspondences
 from geotween.motion import divide as divisions
 from geotween.motion import match as matchings
-from geotween.motion.certify import Certificate, certify
-from geotween.motion.correspond import correspond
-from geotween.motion.divide import NOBODY, Division, divide
+from geotween.motion.certify import Certificate, LayerMotion, certify
+from geotween.motion.correspond import check_technique, correspond
+from geotween.motion.divide import NOBODY, divide
 from geotween.motion.match import Matching, match
 from geotween.motion.seams import share_vertices
 from geotween.motion.tracks import Frame, Track, frame
@@ -48,16 +47,17 @@ Shapes = Sequence[Shape] | Mapping[str, Shape]
 
 @dataclass(frozen=True)
 class Techniques:
-    """The name of each stage's technique."""
+    """The name of each stage's technique; ``radius`` is that of correspondence ``within``."""
 
     correspondence: str
     division: str
     matching: str
+    radius: float | None = None
 
 
 METHODS: Mapping[str, Techniques] = {
     "paper": Techniques("intersects", "voronoi", "rotation"),
-    "auto": Techniques("intersects", "voronoi", "rotation"),
+    "auto": Techniques("auto", "voronoi", "rotation"),
 }
 
 
@@ -77,11 +77,15 @@ class PiecePair:
 
 @dataclass(frozen=True, eq=False)
 class Morph:
-    """The motion from one set of polygons to another; ``divisions`` has one for each layer."""
+    """The motion from one set of polygons to another, layer by layer."""
 
-    tracks: tuple[Track, ...]
-    divisions: tuple[Division, ...]
-    problems: tuple[Problem, ...]
+    layers: tuple[LayerMotion, ...]
+    problems: tuple[Problem, ...] = ()
+
+    @cached_property
+    def tracks(self) -> tuple[Track, ...]:
+        """The moving regions of all layers."""
+        return tuple(track for layer in self.layers for track in layer.tracks)
 
     def frame(self, t: float) -> Frame:
         """The regions drawn at t in [0, 1], after easing.
@@ -98,7 +102,7 @@ class Morph:
         """The paper's SPL: the list of one-to-one pairs of pieces."""
         return tuple(
             PiecePair(one, other, _key(division.origin, i), _key(division.target, j))
-            for division in self.divisions
+            for division in (layer.division for layer in self.layers)
             for one, other, (i, j) in zip(
                 division.origin_pieces, division.target_pieces, division.indices, strict=True
             )
@@ -106,8 +110,8 @@ class Morph:
 
     @cached_property
     def certificate(self) -> Certificate:
-        """What is known about this motion."""
-        return certify(self.divisions, self.problems)
+        """What is proved and measured of this motion, over all t in [0, 1]."""
+        return certify(self.layers, self.problems)
 
 
 def morph(
@@ -118,6 +122,7 @@ def morph(
     correspondence: str | None = None,
     division: str | None = None,
     matching: str | None = None,
+    radius: float | None = None,
     fit: str = "shared",
 ) -> Morph:
     """The motion that turns one set of polygons into another.
@@ -129,9 +134,12 @@ def morph(
         the same thing over time; the parts of a MultiPolygon move on their own.
     method
         ``paper``: correspondence by intersection, Voronoi division, rotation, straight lines.
-        ``auto`` is ``paper`` in this version.
+        ``auto``: correspondence by keys that both sets have, else by shared area; the rest as
+        in the paper.
     correspondence, division, matching
         Another technique for one stage.
+    radius
+        How far polygons may lie apart that correspond, in their units; with ``within``.
     fit
         ``each`` scales the target uniformly and centres it in the origin's box first.
 
@@ -143,7 +151,7 @@ def morph(
     TypeError
         For anything but polygons.
     """
-    techniques = resolve(method, correspondence, division, matching)
+    techniques = resolve(method, correspondence, division, matching, radius)
     if fit not in ("shared", "each"):
         raise ValueError(f"fit is shared or each, not {fit!r}")
     origin_set, origin_problems = _read(origin, "origin")
@@ -153,8 +161,7 @@ def morph(
     if fit == "each" and len(origin_set):
         target_set = fit_into(target_set, origin_set.bounds)
     planned = plan(origin_set, target_set, techniques)
-    problems = (*origin_problems, *target_problems, *planned.problems)
-    return Morph(planned.tracks, planned.divisions, problems)
+    return Morph(planned.layers, (*origin_problems, *target_problems))
 
 
 def resolve(
@@ -162,21 +169,22 @@ def resolve(
     correspondence: str | None = None,
     division: str | None = None,
     matching: str | None = None,
+    radius: float | None = None,
 ) -> Techniques:
     """The technique of each stage: the one named, else the method's.
 
     Raises
     ------
     ValueError
-        For an unknown name.
+        For an unknown name, and for a radius where it does not belong.
     """
     default = METHODS[_known(method, METHODS, "method")]
+    check_technique(correspondence or default.correspondence, radius)
     return Techniques(
-        _known(
-            correspondence or default.correspondence, correspondences.TECHNIQUES, "correspondence"
-        ),
+        correspondence or default.correspondence,
         _known(division or default.division, divisions.TECHNIQUES, "division"),
         _known(matching or default.matching, matchings.TECHNIQUES, "matching"),
+        radius,
     )
 
 
@@ -194,47 +202,45 @@ def plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques) -> Morp
 
 
 def _plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques, size: float) -> Morph:
-    planned = [
-        _plan_layer(origin.in_layer(layer), target.in_layer(layer), techniques, layer, size)
-        for layer in _layers(origin, target)
-    ]
+    layers = dict.fromkeys([*origin.layers, *target.layers]) or [REGIONS]
     return Morph(
-        tuple(track for morph in planned for track in morph.tracks),
-        tuple(division for morph in planned for division in morph.divisions),
-        tuple(problem for morph in planned for problem in morph.problems),
+        tuple(
+            _plan_layer(origin.in_layer(layer), target.in_layer(layer), techniques, layer, size)
+            for layer in layers
+        )
     )
 
 
 def _plan_layer(
     origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str, size: float
-) -> Morph:
-    related = correspond(origin, target, techniques.correspondence)
+) -> LayerMotion:
+    related = correspond(origin, target, techniques.correspondence, techniques.radius)
     divided = divide(related, techniques.division)
-    tolerance = RELATIVE_TOLERANCE * size
-    tracks, problems = interpolate(match(divided, techniques.matching), layer, tolerance)
-    return Morph(tracks, (divided,), (*divided.problems, *problems))
-
-
-def _layers(origin: PolygonSet, target: PolygonSet) -> list[str]:
-    return list(dict.fromkeys([*origin.layers, *target.layers])) or [REGIONS]
+    matched = match(divided, techniques.matching)
+    tracks, problems = interpolate(matched, layer, RELATIVE_TOLERANCE * size)
+    return LayerMotion(layer, tracks, divided, (*divided.problems, *problems), tracks)
 
 
 def _moved_back(
     morph: Morph, origin: PolygonSet, target: PolygonSet, way: NDArray[np.float64]
 ) -> Morph:
     back = partial(np.add, way)
-    divisions = tuple(
-        replace(
-            division,
-            origin=origin.in_layer(layer),
-            target=target.in_layer(layer),
-            origin_pieces=shapely.transform(division.origin_pieces, back),
-            target_pieces=shapely.transform(division.target_pieces, back),
+    return Morph(
+        tuple(
+            replace(
+                motion,
+                division=replace(
+                    motion.division,
+                    origin=origin.in_layer(motion.layer),
+                    target=target.in_layer(motion.layer),
+                    origin_pieces=shapely.transform(motion.division.origin_pieces, back),
+                    target_pieces=shapely.transform(motion.division.target_pieces, back),
+                ),
+                tracks=tuple(replace(t, vertices=t.vertices + way) for t in motion.tracks),
+            )
+            for motion in morph.layers
         )
-        for layer, division in zip(_layers(origin, target), morph.divisions, strict=True)
     )
-    tracks = tuple(replace(track, vertices=track.vertices + way) for track in morph.tracks)
-    return Morph(tracks, divisions, morph.problems)
 
 
 def interpolate(

@@ -78,6 +78,8 @@ def common_runs(one: Vertices, other: Vertices) -> Pins:
     if linked.all() and len(contacts) == nodes[0] == nodes[1]:
         return Pins(contacts[:, 0], contacts[:, 1], linked)
     chains = _chains(following, linked)
+    if not chains:
+        return _no_pins()
     runs = _Runs(
         nodes,
         np.array([number[chain[0]] for chain in chains]),

@@ -93,6 +93,11 @@ class Proof:
     looks: int
     tolerance: float
 
+    @property
+    def clean(self) -> bool:
+        """Whether nothing is wrong, at any t."""
+        return not self.violations and not self.undecided
+
 
 def sweep(tracks: Sequence[Track], tolerance: float = TOUCH) -> Proof:
     """All violations among the tracks of one layer.

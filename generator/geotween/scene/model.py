@@ -172,13 +172,22 @@ class Motion(_Part):
     """How polygons become those of the next step; a name left out follows from the method."""
 
     method: Literal["auto", "paper"] = "auto"
-    correspondence: Literal["intersects", "key"] | None = None
+    correspondence: Literal["intersects", "overlap", "within", "key", "auto"] | None = None
+    radius: Positive | None = Field(
+        None, description="of correspondence: within, in units of the map"
+    )
     division: Literal["voronoi"] | None = None
     matching: Literal["rotation", "trajectory"] | None = None
     easing: Easing = "ease-in-out"
     ghost: Literal["none", "origin"] = Field(
         "none", description="origin keeps the origin's outline during the transition"
     )
+
+    @model_validator(mode="after")
+    def _radius_where_it_belongs(self) -> Self:
+        if (self.correspondence == "within") != (self.radius is not None):
+            raise ValueError("correspondence: within and a radius belong together")
+        return self
 
 
 class Timing(_Part):

@@ -320,9 +320,7 @@ def test_degrees_given_as_planar_coordinates_are_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("package", "message"),
     [
-        ("scipy", "11: hotspots need the packages scipy and contourpy = "
-         "pip install 'geotween[hotspots]'"),
-        ("contourpy", "11: hotspots need the packages scipy and contourpy = "
+        ("contourpy", "11: hotspots need the package contourpy = "
          "pip install 'geotween[hotspots]'"),
         ("pyproj", "30: longitude and latitude need the package pyproj = "
          "pip install 'geotween[geo]', or name planar columns x and y"),

@@ -69,7 +69,7 @@ def _steps(incidents: Incidents, wanted: Hotspots) -> list[Member]:
         )  # fmt: skip
     except ImportError:
         hint = "pip install 'geotween[hotspots]'"
-        raise UnusableError("", "hotspots need the packages scipy and contourpy", hint) from None
+        raise UnusableError("", "hotspots need the package contourpy", hint) from None
     except ValueError as error:
         raise UnusableError("", str(error)) from None
     names = [str(t) if isinstance(t, str) else f"{t:.15g}" for t in thresholds]
