@@ -315,6 +315,15 @@ def test_files_get_the_permissions_of_new_files(write_scene: WriteScene, tmp_pat
     assert {(tmp_path / "out" / name).stat().st_mode for name in files(tmp_path / "out")} == {usual}
 
 
+def test_check_measures_frames_where_asked(write_scene: WriteScene) -> None:
+    (told,) = json.loads(run("check", "--json", "--frames", write_scene()).stdout)
+    measures = told["transitions"][0]["measures"]
+    assert measures["overlap"] == 0
+    assert measures["lost"] == pytest.approx(0, abs=1e-12)
+    (told,) = json.loads(run("check", "--json", write_scene()).stdout)
+    assert "overlap" not in told["transitions"][0]["measures"]
+
+
 def test_check_as_json_says_what_is_proved(write_scene: WriteScene) -> None:
     result = run("check", "--json", write_scene())
     (told,) = json.loads(result.stdout)

@@ -120,8 +120,11 @@ def build(
 @_SCENES
 @_SANDBOX
 @_QUIET
+@click.option("--frames", "in_frames", is_flag=True, help="Measure 201 frames of each, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print all of it as JSON.")
-def check(scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool, as_json: bool) -> None:
+def check(
+    scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool, in_frames: bool, as_json: bool
+) -> None:
     """Validate scenes, plan their motion and prove it; print problems and measures.
 
     A transition is proved where no polygon crosses itself or another one at any time.
@@ -129,7 +132,7 @@ def check(scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool, as_json: 
     \b
     Examples:
       geotween check scenes/*.yaml
-      geotween check fire.yaml --json
+      geotween check fire.yaml --frames --json
     """
     from geotween.export.build import plan_scene, transition_reports
 
@@ -138,14 +141,15 @@ def check(scenes: tuple[Path, ...], sandbox: Path | None, quiet: bool, as_json: 
     for scene in _load(scenes, sandbox):
         morphs, problems = plan_scene(scene)
         if as_json:
-            told.append(_as_json(scene, transition_reports(scene, morphs), problems))
+            transitions = transition_reports(scene, morphs, in_frames=in_frames)
+            told.append(_as_json(scene, transitions, problems))
             worst |= any(problem.severity != "note" for problem in problems)
             continue
         if not quiet:
             click.echo(f"{scene.path}: {len(scene.steps)} steps, {len(morphs)} transitions")
             if scene.projection:
                 click.echo(f"  projection: {scene.projection}")
-            for transition in transition_reports(scene, morphs):
+            for transition in transition_reports(scene, morphs, in_frames=in_frames):
                 proved = "proved" if transition.valid else "not proved"
                 measures = ", ".join(f"{k} {v:.3g}" for k, v in transition.measures.items())
                 click.echo(f"  {' → '.join(transition.steps)}: {proved}, {measures}")

@@ -6,7 +6,7 @@ import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from urllib.parse import quote
 
@@ -18,6 +18,7 @@ from geotween.export.keyframes import keyframes
 from geotween.export.page import page, render
 from geotween.export.svg import animated_svg, still_svg
 from geotween.export.words import words
+from geotween.motion.measure import measure
 from geotween.motion.morph import Morph, plan, resolve
 
 FORMATS = ("html", "svg")
@@ -109,17 +110,19 @@ def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
     return morphs, problems
 
 
-def transition_reports(scene: Scene, morphs: Sequence[Morph]) -> tuple[TransitionReport, ...]:
-    """What is proved and measured of each transition."""
-    return tuple(
-        TransitionReport(
-            (before.label, after.label),
-            len(m.tracks),
-            m.certificate.valid,
-            m.certificate.measures,
-        )
-        for before, after, m in zip(scene.steps[:-1], scene.steps[1:], morphs, strict=True)
-    )
+def transition_reports(
+    scene: Scene, morphs: Sequence[Morph], *, in_frames: bool = False
+) -> tuple[TransitionReport, ...]:
+    """What is proved and measured of each transition; ``in_frames`` looks at 201 frames, too."""
+    reports = []
+    for before, after, m in zip(scene.steps[:-1], scene.steps[1:], morphs, strict=True):
+        measures = dict(m.certificate.measures)
+        if in_frames:
+            found = asdict(measure(m.tracks, before.regions, after.regions))
+            measures |= {name.replace("_", " "): value for name, value in found.items()}
+        steps = (before.label, after.label)
+        reports.append(TransitionReport(steps, len(m.tracks), m.certificate.valid, measures))
+    return tuple(reports)
 
 
 def render_scene(
