@@ -150,7 +150,8 @@ def check(
             if scene.projection:
                 click.echo(f"  projection: {scene.projection}")
             for transition in transition_reports(scene, morphs, in_frames=in_frames):
-                proved = "proved" if transition.valid else "not proved"
+                how = " and ".join(dict.fromkeys(transition.matchings.values()))
+                proved = f"{'' if transition.valid else 'not '}proved, by {how}"
                 measures = ", ".join(f"{k} {v:.3g}" for k, v in transition.measures.items())
                 click.echo(f"  {' → '.join(transition.steps)}: {proved}, {measures}")
         worst |= _report_problems(problems, quiet=quiet, notes=True)

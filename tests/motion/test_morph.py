@@ -13,7 +13,8 @@ from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon, box
 
 import geotween
-from geotween.motion.morph import Techniques, resolve
+from geotween.motion.morph import Techniques, plan, resolve
+from tests.motion.made import made
 from tests.motion.shapes import blobs, polygon_sets, star, tiles
 
 
@@ -168,9 +169,27 @@ def test_two_that_swap_places_overlap_on_the_way_and_are_named() -> None:
     assert m.certificate.measures["crossing"] == pytest.approx(1 / 3)
 
 
+@pytest.mark.parametrize("family", ["combs", "fires"])
+def test_what_would_cross_itself_is_matched_by_trajectory(family: str) -> None:
+    sets = made(family, 0)
+    by = {name: plan(*sets, resolve("auto", matching=name)) for name in ("rotation", "trajectory")}
+    assert [morph.certificate.valid for morph in by.values()] == [False, True]
+    taken = plan(*sets, resolve("auto")).certificate
+    assert taken.valid
+    assert taken.matchings == {"regions": "trajectory"}
+
+
+def test_what_no_matching_proves_stays_by_rotation_and_is_told() -> None:
+    left, right = box(0, 0, 2, 2), box(6, 0, 8, 2)
+    swap = geotween.morph({"a": left, "b": right}, {"a": right, "b": left}).certificate
+    assert swap.matchings == {"regions": "rotation"}
+    assert [problem.severity for problem in swap.problems] == ["warning"]
+
+
 def test_each_stage_can_be_named_on_its_own() -> None:
     assert resolve("paper") == Techniques("intersects", "voronoi", "rotation")
-    assert resolve("auto") == Techniques("auto", "voronoi", "rotation")
+    assert resolve("auto") == Techniques("auto", "voronoi", "rotation", ("trajectory",))
+    assert resolve("auto", matching="rotation").retries == ()
     assert resolve("auto", matching="trajectory").matching == "trajectory"
     assert resolve("paper", correspondence="key").correspondence == "key"
     with pytest.raises(ValueError, match="unknown division 'scissors'; expected one of voronoi"):

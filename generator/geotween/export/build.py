@@ -29,12 +29,14 @@ INDEX = "index.html"
 class TransitionReport:
     """What happened between two steps: their labels, the pieces that moved, and measures.
 
-    ``valid`` tells whether it was proved that polygons cross nowhere on the way.
+    ``valid`` tells whether it was proved that polygons cross nowhere on the way; ``matchings``
+    which matching each layer was given.
     """
 
     steps: tuple[str, str]
     pieces: int
     valid: bool
+    matchings: Mapping[str, str]
     measures: Mapping[str, float]
 
 
@@ -116,12 +118,17 @@ def transition_reports(
     """What is proved and measured of each transition; ``in_frames`` looks at 201 frames, too."""
     reports = []
     for before, after, m in zip(scene.steps[:-1], scene.steps[1:], morphs, strict=True):
-        measures = dict(m.certificate.measures)
+        certificate = m.certificate
+        measures = dict(certificate.measures)
         if in_frames:
             found = asdict(measure(m.tracks, before.regions, after.regions))
             measures |= {name.replace("_", " "): value for name, value in found.items()}
         steps = (before.label, after.label)
-        reports.append(TransitionReport(steps, len(m.tracks), m.certificate.valid, measures))
+        reports.append(
+            TransitionReport(
+                steps, len(m.tracks), certificate.valid, certificate.matchings, measures
+            )
+        )
     return tuple(reports)
 
 

@@ -23,7 +23,7 @@ PARTITION_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class LayerMotion:
-    """The motion of one layer: its tracks, and the division behind them.
+    """The motion of one layer: its tracks, the division behind them, and the matching taken.
 
     ``near`` are the tracks where coordinates have digits to spare, which may be elsewhere than
     where they are drawn.
@@ -33,6 +33,7 @@ class LayerMotion:
     tracks: tuple[Track, ...]
     division: Division
     problems: tuple[Problem, ...]
+    matching: str
     near: tuple[Track, ...]
 
     @cached_property
@@ -47,12 +48,13 @@ class Certificate:
 
     ``valid`` is True where it was proved, for all t in [0, 1], that every polygon is simple and
     that no two of a layer overlap (``motion/sweep.py`` says up to which rounding), and that the
-    pieces make up their polygons.
+    pieces make up their polygons. ``matchings`` tells by layer which one was taken.
     """
 
     valid: bool
     problems: tuple[Problem, ...]
     measures: dict[str, float]
+    matchings: dict[str, str]
 
 
 def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Certificate:
@@ -92,6 +94,7 @@ def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Cer
         exact and all(layer.proof.clean for layer in layers),
         (*problems, *met),
         measures,
+        {layer.layer: layer.matching for layer in layers},
     )
 
 

@@ -47,17 +47,21 @@ Shapes = Sequence[Shape] | Mapping[str, Shape]
 
 @dataclass(frozen=True)
 class Techniques:
-    """The name of each stage's technique; ``radius`` is that of correspondence ``within``."""
+    """The name of each stage's technique; ``radius`` is that of correspondence ``within``.
+
+    ``retries`` are matchings for a layer that the first one does not prove.
+    """
 
     correspondence: str
     division: str
     matching: str
+    retries: tuple[str, ...] = ()
     radius: float | None = None
 
 
 METHODS: Mapping[str, Techniques] = {
     "paper": Techniques("intersects", "voronoi", "rotation"),
-    "auto": Techniques("auto", "voronoi", "rotation"),
+    "auto": Techniques("auto", "voronoi", "rotation", ("trajectory",)),
 }
 
 
@@ -134,8 +138,9 @@ def morph(
         the same thing over time; the parts of a MultiPolygon move on their own.
     method
         ``paper``: correspondence by intersection, Voronoi division, rotation, straight lines.
-        ``auto``: correspondence by keys that both sets have, else by shared area; the rest as
-        in the paper.
+        ``auto``: correspondence by keys that both sets have, else by shared area; matching by
+        trajectory where polygons would cross by rotation, none is divided, and that proves it;
+        the rest as in the paper.
     correspondence, division, matching
         Another technique for one stage.
     radius
@@ -184,6 +189,7 @@ def resolve(
         correspondence or default.correspondence,
         _known(division or default.division, divisions.TECHNIQUES, "division"),
         _known(matching or default.matching, matchings.TECHNIQUES, "matching"),
+        () if matching else default.retries,
         radius,
     )
 
@@ -214,11 +220,23 @@ def _plan(origin: PolygonSet, target: PolygonSet, techniques: Techniques, size: 
 def _plan_layer(
     origin: PolygonSet, target: PolygonSet, techniques: Techniques, layer: str, size: float
 ) -> LayerMotion:
+    """A layer's motion: by the first matching, or by another one that is proved where it is not.
+
+    Pieces of a divided polygon stay with the first: other matchings can part their seams.
+    """
     related = correspond(origin, target, techniques.correspondence, techniques.radius)
     divided = divide(related, techniques.division)
-    matched = match(divided, techniques.matching)
-    tracks, problems = interpolate(matched, layer, RELATIVE_TOLERANCE * size)
-    return LayerMotion(layer, tracks, divided, (*divided.problems, *problems), tracks)
+
+    def by(matching: str) -> LayerMotion:
+        matched = match(divided, matching)
+        tracks, problems = interpolate(matched, layer, RELATIVE_TOLERANCE * size)
+        return LayerMotion(layer, tracks, divided, (*divided.problems, *problems), matching, tracks)
+
+    first = by(techniques.matching)
+    if not techniques.retries or first.proof.clean or any(t.seams.any() for t in first.tracks):
+        return first
+    others = (by(matching) for matching in techniques.retries)
+    return next((other for other in others if other.proof.clean), first)
 
 
 def _moved_back(
