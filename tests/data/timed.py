@@ -1,17 +1,28 @@
-"""Scenes of squares with times."""
+"""Times, and scenes of squares with times."""
 
 from __future__ import annotations
 
+import datetime
 import json
 from collections.abc import Sequence
 from typing import Any
 
+from hypothesis import strategies as st
 from shapely.geometry import box
 
 from geotween.data.load import Scene
 from tests.data.written import as_collection
 
+DAYS = st.dates(datetime.date(1900, 1, 1), datetime.date(2100, 1, 1))
 FLAT = "map: {projection: none, simplify: off}"
+
+
+def day(text: str) -> datetime.date:
+    return datetime.date.fromisoformat(text)
+
+
+def moment(text: str) -> datetime.datetime:
+    return datetime.datetime.fromisoformat(text)
 
 
 def timed(times: Sequence[Any]) -> str:

@@ -40,6 +40,13 @@ class Identity:
     layer: str = REGIONS
     attributes: Mapping[str, object] = field(default_factory=dict, compare=False)
 
+    @property
+    def called(self) -> str:
+        """What it is called in problems: its name, its key, or its position in the set."""
+        if self.name or self.keyed:
+            return self.name or str(self.key)
+        return f"polygon {int(self.key) + 1}"
+
 
 @dataclass(frozen=True)
 class Feature:

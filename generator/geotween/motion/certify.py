@@ -110,7 +110,7 @@ def _crossings(layer: LayerMotion) -> list[Problem]:
         if not those:
             continue
         worst = max(those, key=lambda v: v.area * (v.end - v.start))
-        names = " and ".join(dict.fromkeys(_name(layer.tracks[i]) for i in worst.tracks))
+        names = " and ".join(dict.fromkeys(layer.tracks[i].identity.called for i in worst.tracks))
         pairs = len({v.tracks for v in those})
         span = f"from {worst.start:.0%} to {worst.end:.0%} of the way"
         message = f"{names} {one} {span}"
@@ -126,13 +126,6 @@ def _crossings(layer: LayerMotion) -> list[Problem]:
         for one in layer.proof.undecided
     ]
     return found
-
-
-def _name(track: Track) -> str:
-    identity = track.identity
-    if identity.name or identity.keyed:
-        return identity.name or str(identity.key)
-    return f"polygon {identity.key + 1}" if isinstance(identity.key, int) else str(identity.key)
 
 
 def _time_of(violations: Iterable[Violation]) -> float:

@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from geotween.data.tidy.repair import made_valid
 from geotween.motion.rings import Offsets, Vertices, next_vertex, to_polygons
 from geotween.motion.tracks import Track
 
@@ -55,18 +56,10 @@ def overlap(one: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
 
 
 def rebuilt(polygons: Objects) -> Objects:
-    """Polygons, the invalid ones as what their outer rings cover, less what their holes do.
-
-    From their lines, ten times slower, where that breaks down.
-    """
+    """Polygons, the invalid ones as what their outer rings cover, less what their holes do."""
     found = polygons.copy()
     for k in np.flatnonzero(~shapely.is_valid(polygons)).tolist():
-        try:
-            found[k] = shapely.make_valid(found[k], method="structure", keep_collapsed=False)
-        except shapely.errors.GEOSException:
-            found[k] = shapely.make_valid(polygons[k])
-        if not shapely.is_valid(found[k]):
-            found[k] = shapely.make_valid(polygons[k])
+        found[k] = made_valid(polygons[k])
     return found
 
 

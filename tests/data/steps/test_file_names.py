@@ -10,16 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geotween.data.steps.file_names import looks_like_a_date, times_in_names
-
-DAYS = st.dates(datetime.date(1900, 1, 1), datetime.date(2100, 1, 1))
-
-
-def day(text: str) -> datetime.date:
-    return datetime.date.fromisoformat(text)
-
-
-def moment(text: str) -> datetime.datetime:
-    return datetime.datetime.fromisoformat(text)
+from tests.data.timed import DAYS, day, moment
 
 
 @pytest.mark.parametrize(

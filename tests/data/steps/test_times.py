@@ -20,17 +20,9 @@ from geotween.data.steps.times import (
     time_of,
     words_of,
 )
+from tests.data.timed import DAYS, day, moment
 
 PERIODS = ("year", "quarter", "month", "week", "day")
-DAYS = st.dates(datetime.date(1900, 1, 1), datetime.date(2100, 1, 1))
-
-
-def day(text: str) -> datetime.date:
-    return datetime.date.fromisoformat(text)
-
-
-def moment(text: str) -> datetime.datetime:
-    return datetime.datetime.fromisoformat(text)
 
 
 # What a value tells

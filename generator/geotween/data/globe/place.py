@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geotween.data.polygons import Feature, Shapes, bounds, geometries_of, with_geometries
 from geotween.data.problems import Problem
-from geotween.data.read.sources import Held
+from geotween.data.read.held import GEOGRAPHIC, Held
 from geotween.scene.document import Document, Location
 from geotween.scene.errors import SceneError
 from geotween.scene.model import Map
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from geotween.data.globe.projection import Projection
 
-GEOGRAPHIC = "OGC:CRS84"  # longitude, latitude on WGS 84: GeoJSON's own, by RFC 7946
 _SWAPPED = "are latitude and longitude swapped? longitude (x) comes first"
 _OR_PLANAR = "if they are planar, say map: {projection: none}"
 _MAP_CRS: Location = ("map", "crs")

@@ -8,6 +8,8 @@ from geotween.data.polygons import Feature
 from geotween.data.problems import Problem
 from geotween.scene.document import Location
 
+GEOGRAPHIC = "OGC:CRS84"  # longitude, latitude on WGS 84: GeoJSON's own, by RFC 7946
+
 
 @dataclass(frozen=True, eq=False)
 class Held:

@@ -20,6 +20,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from geotween.data.polygons import Feature
 from geotween.data.read.archives import unpacked
 from geotween.data.read.columns import Columns, identity
+from geotween.data.read.held import GEOGRAPHIC
 from geotween.data.read.kinds import (
     ARCHIVES,
     INCOMPLETE,
@@ -253,7 +254,7 @@ def _geometry_column(about: Any) -> tuple[str, str | None]:
         raise UnreadableError(message)
     if column.get("encoding") != "WKB":
         raise UnreadableError(f"its geometry is encoded as {column.get('encoding')}, not as WKB")
-    crs = column.get("crs", "OGC:CRS84")
+    crs = column.get("crs", GEOGRAPHIC)
     if not isinstance(crs, dict | str | None):
         raise UnreadableError("its metadata name a crs that is no PROJJSON")
     return name, json.dumps(crs) if isinstance(crs, dict) else crs

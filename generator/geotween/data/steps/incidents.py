@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from geotween.data.polygons import Feature
 from geotween.data.problems import Problem
-from geotween.data.read.sources import Held, SourceReader
+from geotween.data.read.held import GEOGRAPHIC, Held
+from geotween.data.read.sources import SourceReader
 from geotween.data.steps.points import (
     PLACE,
     Incidents,
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
 SHARE = "20%"  # of the highest density: what a hotspot is where the scene does not say
 NEARBY = 0.01  # degrees, a kilometre: the cells around points that a projection has to fit
-GEOGRAPHIC = "OGC:CRS84"
 SQUARE_KILOMETRE = 1e6  # m²: densities on the globe are for one, as people count them
 FARTHEST_EAST = 360  # degrees: some count longitudes from 0 up to here
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")  # startLat, LAT_1 and gps.lat have a word "lat"

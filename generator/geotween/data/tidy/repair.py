@@ -36,7 +36,7 @@ def repair(
     valid = given.copy()
     invalid = np.flatnonzero(~shapely.is_valid(given))
     reasons = shapely.is_valid_reason(given[invalid])
-    valid[invalid] = [_made_valid(geometry) for geometry in given[invalid]]
+    valid[invalid] = [made_valid(geometry) for geometry in given[invalid]]
     before, after = shapely.area(given), shapely.area(valid)
     for i, reason in zip(invalid.tolist(), reasons, strict=True):
         size = max(before[i], after[i])
@@ -77,7 +77,7 @@ def repair(
     return kept, problems
 
 
-def _made_valid(broken: Polygon | MultiPolygon) -> MultiPolygon:
+def made_valid(broken: Polygon | MultiPolygon) -> MultiPolygon:
     """A geometry rebuilt by the structural method, or from its lines where that one breaks down.
 
     With rings that share edges it can leave an edge doubled, or raise.

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from geotween.data.polygons import Identity, PolygonSet
+from geotween.data.polygons import PolygonSet
 from geotween.data.problems import Problem
 from geotween.motion.correspond import Correspondence
 from geotween.motion.divide.voronoi import Mend
@@ -101,16 +101,10 @@ def _cut_all(
         cells, mends = cut(polygon, list(others.polygons[mates]))
         pieces += cells
         for mend in mends:
-            piece = f"{_called(identity)} for {_called(others.identities[mates[mend.cell]])}"
+            piece = f"{identity.called} for {others.identities[mates[mend.cell]].called}"
             problems.append(
                 Problem(mend.kind, "note", _MENDS[mend.kind], (), piece, mend.share, "of the area")
             )
     found = np.empty(len(pieces), dtype=object)
     found[:] = pieces
     return found, problems
-
-
-def _called(identity: Identity) -> str:
-    if identity.name or identity.keyed:
-        return identity.name or str(identity.key)
-    return f"polygon {int(identity.key) + 1}"
