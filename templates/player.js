@@ -19,24 +19,93 @@ const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const mix = (a, b, t) => a + (b - a) * t;
 const thousandth = (x) => Math.round(x * 1000) / 1000;
 
-// A file holds differences, along the list and from key time to key time, because small
-// numbers are short. Undone once per track, into one list of positions per key time.
-function decode(track) {
-  const frames = [];
-  for (const differences of track.vertices) {
-    const before = frames.at(-1) ?? new Int32Array(differences.length);
-    const frame = new Int32Array(differences.length);
-    for (let i = 0; i < frame.length; i++) {
-      frame[i] = before[i] + differences[i] + (i > 1 ? frame[i - 2] - before[i - 2] : 0);
+// A file holds differences, because small numbers are short.
+function summed(differences, stride = 1) {
+  const values = Int32Array.from(differences);
+  for (let i = stride; i < values.length; i++) values[i] += values[i - stride];
+  return values;
+}
+
+// Vertices that tracks share: all points, and from which one to which each vertex goes, and when.
+function decodeVertices({ points, ways, jumps, moments, lives }) {
+  const count = ways.length;
+  const from = new Int32Array(count), to = new Int32Array(count);
+  const since = new Float64Array(count), until = new Float64Array(count).fill(1);
+  let a = 0, b = 0, jump = 0, life = -3, left = 0, start = 0, end = 0;
+  for (let i = 0; i < count; i++) {
+    const way = +ways[i];
+    a += way ? way >> 1 : jumps[jump++];
+    b += way ? way & 1 : jumps[jump++];
+    from[i] = a;
+    to[i] = b;
+    if (a === b) continue;
+    while (!left) {
+      start += lives[life += 3];
+      end += lives[life + 1];
+      left = lives[life + 2];
     }
-    frames.push(frame);
+    left--;
+    since[i] = moments[start];
+    until[i] = moments[end];
   }
-  const codes = new Uint8Array(track.rings.reduce((sum, count) => sum + count, 0));
-  const seams = track.seams ?? [];
+  return { points: summed(points, 2), from, to, since, until };
+}
+
+// A track's rings as numbers of vertices: by turns what to copy from a track before it, and runs.
+function decodeNodes(track, base, unseen) {
+  const nodes = [];
+  let place = 0, node = unseen;
+  for (let i = 0; i < track.nodes.length;) {
+    if (base) {
+      place += track.nodes[i++];
+      for (let count = track.nodes[i++]; count > 0; count--) nodes.push(base[place++]);
+    }
+    if (i === track.nodes.length) break;
+    node += track.nodes[i++];
+    const count = track.nodes[i++];
+    for (let k = Math.abs(count); k > 0; k--, node += Math.sign(count)) nodes.push(node);
+  }
+  return Int32Array.from(nodes);
+}
+
+// Where a track's own vertices are at each of its key times: displacements undone once.
+function decodeFrames(places) {
+  const frames = [];
+  for (const differences of places) {
+    const frame = summed(differences, 2), before = frames.at(-1);
+    frames.push(before ? frame.map((value, i) => value + before[i]) : frame);
+  }
+  return frames;
+}
+
+// The seams of a track's edges, one code for each.
+function decodeSeams({ rings, seams = [] }) {
+  const codes = new Uint8Array(rings.reduce((sum, count) => sum + count, 0));
   for (let i = 0, edge = 0; i < seams.length; edge += seams[i + 1], i += 2) {
     codes.fill(seams[i], edge, edge + seams[i + 1]);
   }
-  return { times: track.times, rings: track.rings, frames, codes };
+  return codes;
+}
+
+// All tracks. Those that share vertices say how much they differ from one before them.
+function decode(data) {
+  const vertices = decodeVertices(data), found = [];
+  let unseen = 0;
+  for (const track of data.tracks) {
+    const { rings, times, base } = track;
+    const life = (track.life ?? []).map((i) => data.moments[i]);
+    const decoded = { rings, times, life, vertices, codes: decodeSeams(track) };
+    if (track.nodes) {
+      const nodes = decodeNodes(track, found[found.length - base]?.nodes, unseen);
+      unseen = nodes.reduce((most, node) => Math.max(most, node + 1), unseen);
+      decoded.still = nodes.every((node) => vertices.from[node] === vertices.to[node]);
+      decoded.nodes = nodes;
+    } else {
+      decoded.frames = decodeFrames(track.places);
+    }
+    found.push(decoded);
+  }
+  return found;
 }
 
 // t of a cubic Bézier curve at u. Bisection: there is one call per frame, and it cannot fail.
@@ -52,8 +121,13 @@ function ease(points, u) {
   return clamp(at(y1, y2, high), 0, 1);
 }
 
-function verticesAt({ times, frames }, t) {
-  if (frames.length === 1) return frames[0];
+// Where one track gives way to another, that one is drawn.
+function isThere({ life: [since = 0, until = 1] }, t) {
+  return since <= t && (t < until || t === 1 && until === 1);
+}
+
+function verticesAt({ nodes, vertices, times, frames }, t) {
+  if (nodes) return sharedAt(vertices, nodes, t);
   let k = 0;
   while (k < times.length - 2 && times[k + 1] <= t) k++;
   const [a, b] = [frames[k], frames[k + 1]];
@@ -61,6 +135,17 @@ function verticesAt({ times, frames }, t) {
   const s = length > 0 ? clamp((t - times[k]) / length, 0, 1) : 1;
   const xy = new Float64Array(a.length);
   for (let i = 0; i < xy.length; i++) xy[i] = mix(a[i], b[i], s);
+  return xy;
+}
+
+function sharedAt({ points, from, to, since, until }, nodes, t) {
+  const xy = new Float64Array(2 * nodes.length);
+  nodes.forEach((node, i) => {
+    const a = 2 * from[node], b = 2 * to[node];
+    const s = a === b ? 0 : clamp((t - since[node]) / (until[node] - since[node]), 0, 1);
+    xy[2 * i] = mix(points[a], points[b], s);
+    xy[2 * i + 1] = mix(points[a + 1], points[b + 1], s);
+  });
   return xy;
 }
 
@@ -167,10 +252,11 @@ function finite(value) {
 }
 
 class GeotweenMap extends HTMLElement {
-  static parts = { decode, ease, verticesAt, linesOf, pathData, mixColour, seamOpacity, spanAt, stepAt, roomFor };
+  static parts = { decode, ease, isThere, verticesAt, linesOf, pathData, mixColour, seamOpacity, spanAt, stepAt, roomFor };
 
   loop = false;
-  #data = { duration: 0, steps: [], spans: [], tracks: [], groups: [], slots: [], paints: [] };
+  #data = { duration: 0, steps: [], spans: [], groups: [], slots: [], paints: [] };
+  #tracks = [];
   #groups = [];
   #slots = [];
   #controls = null;
@@ -339,17 +425,18 @@ class GeotweenMap extends HTMLElement {
 
   // What stands still becomes text once per span, what moves becomes text at every frame.
   #textOf(shape, kind, t) {
-    const { tracks, grid } = this.#data;
+    const { grid } = this.#data;
     if (!this.#texts.has(shape)) {
       const wanted = { border: 0, seam: shape.code }[kind] ?? null;
-      this.#texts.set(shape, shape.tracks.map((index) => {
-        if (!tracks[index].frames) tracks[index] = decode(tracks[index]);
-        const track = tracks[index], lines = linesOf(track, wanted);
-        return track.frames.length > 1 ? { track, lines } : pathData(lines, track.frames[0], grid);
-      }));
+      this.#texts.set(shape, [...summed(shape.tracks)].map((index) => ({
+        track: this.#tracks[index], lines: linesOf(this.#tracks[index], wanted), text: null })));
     }
-    return this.#texts.get(shape).map((part) =>
-      typeof part === "string" ? part : pathData(part.lines, verticesAt(part.track, t), grid)).join("");
+    return this.#texts.get(shape).filter(({ track }) => isThere(track, t)).map((part) => {
+      if (part.text) return part.text;
+      const text = pathData(part.lines, verticesAt(part.track, t), grid);
+      if (part.track.still) part.text = text;
+      return text;
+    }).join("");
   }
 
   // ---- building ----
@@ -360,8 +447,9 @@ class GeotweenMap extends HTMLElement {
     const stage = figure?.querySelector("g.stage");
     if (!json || !stage) return false;
     const data = JSON.parse(json.textContent);
-    if (data.version !== 1) throw new RangeError("geotween-map reads keyframes of version 1");
+    if (data.version !== 2) throw new RangeError("geotween-map reads keyframes of version 2");
     this.#data = data;
+    this.#tracks = decode(data);
     this.loop = data.loop;
     this.#groups = data.groups.map(({ layer }) => make("g", { class: "layer", "data-layer": layer }));
     this.#slots = data.slots.map(({ group, kind, key }) => {

@@ -249,7 +249,7 @@ def test_same_scene_gives_the_same_bytes(write_scene: WriteScene, tmp_path: Path
 def test_terminal_that_has_no_arrow_still_gets_the_rest(write_scene: WriteScene) -> None:
     result = process("check", write_scene(), PYTHONIOENCODING="cp1252")
     assert (result.returncode, result.stderr) == (0, b"")
-    assert b"1 ? 2: proved, by rotation, partition error" in result.stdout
+    assert b"1 ? 2: proved, by trajectory, partition error" in result.stdout
 
 
 # Whole or not at all

@@ -19,6 +19,7 @@ from geotween.export.keyframes import keyframes
 from geotween.export.page_grid import GRID
 from geotween.export.resources import resource
 from geotween.export.shapes import Shape
+from geotween.motion.divide import divide
 
 GOLDEN = Path(__file__).parent / "golden"
 SCENES = sorted(resource("scenes").glob("*.yaml"))
@@ -74,7 +75,8 @@ def test_the_gallery_has_splits_merges_births_deaths_and_holes() -> None:
     for path in SCENES:
         scene = geotween.load(path)
         for morph in plan_scene(scene)[0]:
-            origin, target = np.concatenate([layer.division.indices for layer in morph.layers]).T
+            divisions = (d for one in morph.layers for d in (one.division, divide(one.swept)))
+            origin, target = np.concatenate([division.indices for division in divisions]).T
             seen |= {"birth"} if (origin < 0).any() else set()
             seen |= {"death"} if (target < 0).any() else set()
             seen |= {"split"} if np.bincount(origin[origin >= 0], minlength=1).max() > 1 else set()

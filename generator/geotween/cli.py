@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from io import TextIOWrapper
@@ -150,8 +151,7 @@ def check(
             if scene.projection:
                 click.echo(f"  projection: {scene.projection}")
             for transition in transition_reports(scene, morphs, in_frames=in_frames):
-                how = " and ".join(dict.fromkeys(transition.matchings.values()))
-                proved = f"{'' if transition.valid else 'not '}proved, by {how}"
+                proved = f"{'' if transition.valid else 'not '}proved, {_ways(transition)}"
                 measures = ", ".join(f"{k} {v:.3g}" for k, v in transition.measures.items())
                 click.echo(f"  {' → '.join(transition.steps)}: {proved}, {measures}")
         worst |= _report_problems(problems, quiet=quiet, notes=True)
@@ -173,6 +173,15 @@ def schema() -> None:
     from geotween.scene.read import scene_schema
 
     click.echo(json.dumps(scene_schema(), indent=2, ensure_ascii=False))
+
+
+def _ways(transition: TransitionReport) -> str:
+    """In which ways the pieces were moved, the most frequent first."""
+    total: Counter[str] = Counter()
+    for ways in transition.ways.values():
+        total.update(ways)
+    found = [way if len(total) == 1 else f"{way} ({n})" for way, n in total.most_common()]
+    return f"by {' and '.join(found)}" if found else "empty"
 
 
 def _as_json(

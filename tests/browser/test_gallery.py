@@ -29,7 +29,7 @@ def test_what_is_drawn_is_what_frame_says(
     stop, seek = drawn.HANDS[suffix]
     with drawn.open_page(browser, gallery / f"{path.stem}.{suffix}") as page:
         stop(page)
-        drawn.assert_plays_as_planned(scene, page, seek)
+        drawn.assert_plays_as_planned(scene, page, seek, drawn.TOLERANCES[suffix])
         drawn.assert_rests_are_exact(scene, page, seek)
 
 

@@ -19,10 +19,11 @@ def test_real_data_plays_as_planned(name: str, tmp_path: Path, browser: Browser)
     report = geotween.build(scene, tmp_path / "public")
     assert all(t.measures["partition error"] <= 1e-9 for t in report.transitions)
     for file in report.files:
-        stop, seek = drawn.HANDS[file.suffix[1:]]
+        kind = file.suffix[1:]
+        stop, seek = drawn.HANDS[kind]
         with drawn.open_page(browser, file) as page:
             stop(page)
-            drawn.assert_plays_as_planned(scene, page, seek, per_transition=5)
+            drawn.assert_plays_as_planned(scene, page, seek, drawn.TOLERANCES[kind], 5)
             drawn.assert_rests_are_exact(scene, page, seek)
 
 

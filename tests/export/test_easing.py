@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geotween.export.easing import EASINGS, ease, segments
+from geotween.export.easing import EASINGS, ease, segments, share_at
 
 NAMES = pytest.mark.parametrize("name", EASINGS)
 
@@ -27,6 +27,12 @@ def test_an_easing_never_goes_back(name: str, a: float, b: float) -> None:
 def test_ease_in_out_is_half_way_at_half_time() -> None:
     assert ease(EASINGS["ease-in-out"], 0.5) == pytest.approx(0.5)
     assert ease(EASINGS["ease-in"], 0.5) < 0.5 < ease(EASINGS["ease-out"], 0.5)
+
+
+@NAMES
+@given(st.floats(0, 1))
+def test_the_share_at_which_t_is_reached(name: str, t: float) -> None:
+    assert ease(EASINGS[name], share_at(EASINGS[name], t)) == pytest.approx(t, abs=1e-12)
 
 
 @NAMES

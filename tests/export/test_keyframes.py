@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,12 +15,15 @@ from geotween.export.page import keyframes_json
 from geotween.export.paint import PALETTE, RAMP
 from geotween.export.svg import animated_svg
 from geotween.export.words import words
+from tests.export.told import tracks_told
 
 Write = Callable[..., Path]
 WHOLE = "{class: whole, polygon: [[0, 0], [8, 0], [8, 8], [0, 8]]}"
 LEFT = "{class: left, polygon: [[0, 3], [1, 3], [1, 5], [0, 5]]}"
 RIGHT = "{class: right, polygon: [[7, 3], [8, 3], [8, 5], [7, 5]]}"
-SPLIT = f"steps: [{{polygons: [{WHOLE}]}}, {{polygons: [{LEFT}, {RIGHT}]}}]"
+SPLIT = (
+    f"motion: {{method: morph}}\nsteps: [{{polygons: [{WHOLE}]}}, {{polygons: [{LEFT}, {RIGHT}]}}]"
+)
 
 
 def frames(write: Write, text: str) -> Keyframes:
@@ -75,7 +77,7 @@ def test_while_still_of_one_colour_the_parts_have_a_backing(write_scene: Write) 
 
 
 def test_a_ghost_keeps_the_origins_outline_during_the_transition(write_scene: Write) -> None:
-    found = frames(write_scene, "motion: {ghost: origin}\n" + SPLIT)
+    found = frames(write_scene, SPLIT.replace("{method", "{ghost: origin, method"))
     assert [k for k, _ in kinds(found, 0)] == ["region"]
     ghost = found.spans[1][1][-1]
     assert ghost.slot.kind == "ghost"
@@ -94,21 +96,16 @@ def test_opacity_sits_on_the_group(write_scene: Write) -> None:
     assert [tuple(g) for g in groups] == [(0.5, 0.5), (0.5, 0.2), (0.2, 0.2)]
 
 
-def decode(track: dict[str, Any]) -> list[np.ndarray]:
-    """The vertices of a track of the page at each key time, in steps of the grid."""
-    moves = [np.cumsum(np.reshape(v, (-1, 2)), axis=0) for v in track["vertices"]]
-    return list(np.cumsum(moves, axis=0))
-
-
 @pytest.mark.parametrize("span", [0, 1, 2])
 def test_the_page_is_told_the_same_vertices(write_scene: Write, span: int) -> None:
     found = frames(write_scene, SPLIT)
-    told = keyframes_json(found)
-    for shape, written in zip(found.spans[span][1], told["spans"][span]["shapes"], strict=True):
-        for track, number in zip(shape.tracks, written["tracks"], strict=True):
-            decoded = decode(told["tracks"][number])
-            assert np.array_equal(decoded, track.vertices)
-            assert told["tracks"][number]["rings"] == np.diff(track.offsets).tolist()
+    data = keyframes_json(found)
+    told = tracks_told(data)
+    for shape, written in zip(found.spans[span][1], data["spans"][span]["shapes"], strict=True):
+        for track, number in zip(shape.tracks, np.cumsum(written["tracks"]), strict=True):
+            for t in track.times:
+                assert np.array_equal(told[number].at(t), track.at(t))
+            assert told[number].rings == np.diff(track.offsets).tolist()
 
 
 def test_what_does_not_change_is_one_path_of_the_svg_for_all_time(write_scene: Write) -> None:

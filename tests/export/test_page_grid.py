@@ -45,7 +45,7 @@ def test_a_polygon_smaller_than_the_grid_has_no_ring() -> None:
 
 
 def test_what_moves_less_than_the_grid_is_still() -> None:
-    m = geotween.morph([box(0, 0, 100, 100)], [box(0, 0, 100, 100.01)])
+    m = geotween.morph([box(0, 0, 100, 100)], [box(0, 0, 100, 100.01)], "morph")
     page = fit_page(frame(width=132), [polygon_set([Feature(box(0, 0, 100, 100))])])
     assert moving(m.tracks[0], page).still
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from geotween.export.page_grid import GridTrack
+from geotween.export.page_grid import GridFilm, GridTrack
 from geotween.export.paint import Paint
 from geotween.export.paths import closed_path, path_texts, runs
 from geotween.export.shapes import Group, Shape, Slot
@@ -56,6 +57,42 @@ def test_key_times_of_one_track_are_written_for_all() -> None:
     thrice = GridTrack((0.0, 0.5, 1.0), np.array([SQUARE] * 3), OFFSETS, np.zeros(4, np.uint8))
     middle = path_texts(shape(twice, thrice))[1]
     assert middle == (0.5, "M0 0l15.5 0 0 15-15.8 0zM0 0l10.5 0 0 10-10.8 0z")
+
+
+def test_tracks_that_come_and_go_make_parts() -> None:
+    def lasting(*life: float) -> GridTrack:
+        return replace(track(SQUARE, LARGER), times=life, life=life)
+
+    early, late, always = lasting(0, 0.25), lasting(0.25, 0.5), track(SQUARE)
+    assert shape(early, late).parts() == [((0, 0.25), (early,)), ((0.25, 0.5), (late,))]
+    assert shape(late, always).parts() == [
+        ((0, 0.25), (always,)),
+        ((0.25, 0.5), (late, always)),
+        ((0.5, 1), (always,)),
+    ]
+    assert not replace(shape(always), tracks=(replace(always, life=(0, 0.5)),)).still
+
+
+def test_a_part_is_written_from_its_beginning_to_its_end() -> None:
+    late = replace(track(SQUARE, LARGER), times=(0.25, 0.5), life=(0.25, 0.5))
+    (start, one), (end, other) = path_texts(shape(late), late.life)
+    assert (start, end) == late.life
+    assert one == "M0 0l10.5 0 0 10-10.8 0z"
+    assert other == "M0 0l20.5 0 0 20-20.8 0z"
+
+
+def test_what_moves_on_a_line_of_a_film_is_written_to_a_hundredth() -> None:
+    """From (0, 0) to (1, 0.3) px, seen when a third of the way is done."""
+    places = np.array([[[0, 0], [50, 0], [0, 50]], [[10, 3], [50, 0], [0, 50]]])
+    film = GridFilm(places, np.array([[0.0, 0, 0], [0.75, 1, 1]]))
+    nodes = np.arange(3, dtype=np.int32)
+    seen = (np.rint(film.at(nodes, 0.25))[None]).astype(np.int64)
+    filmed = GridTrack(
+        (0.25, 0.75), seen, np.array([0, 3]), np.zeros(3, np.uint8), (0.25, 0.75), film, nodes
+    )
+    texts = dict(path_texts(shape(filmed), filmed.life))
+    assert texts[0.25] == "M.33 .1l4.67-.1-5 5z"
+    assert texts[0.75] == "M1 .3l4-.3-5 5z"
 
 
 def test_a_border_leaves_out_the_seam() -> None:

@@ -13,7 +13,7 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from geotween.data.polygons import Feature, PolygonSet, polygon_set
-from geotween.motion.morph import Techniques, resolve
+from geotween.motion.techniques import Techniques, resolve
 
 Random = np.random.Generator
 Floats = NDArray[np.float64]
@@ -196,5 +196,6 @@ def made(family: str, seed: int) -> tuple[PolygonSet, PolygonSet]:
 
 
 def techniques(family: str, matching: str | None = None) -> Techniques:
-    """The default ones, by key where there are keys; with another matching."""
-    return resolve("auto", "key" if family in KEYED else None, matching=matching)
+    """The default ones, by key where there are keys; or those of a morph by one matching."""
+    method = "morph" if matching else "auto"
+    return resolve(method, "key" if family in KEYED else None, matching=matching)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import shapely
 from hypothesis import strategies as st
 from shapely.geometry import MultiPoint, Polygon, box
+
+import geotween
+from geotween.motion.morph import Shapes
 
 
 def star(count: int, seed: int, radius: float = 1.0, x: float = 0.0, y: float = 0.0) -> Polygon:
@@ -54,3 +59,8 @@ polygon_sets = st.one_of(
     st.builds(tiles, st.integers(1, 8), seeds),
     st.builds(hulls, st.integers(1, 6), seeds),
 )
+
+
+def travelled(origin: Shapes, target: Shapes, **options: Any) -> geotween.Morph:
+    """The motion by rotation and straight lines, with no other way tried; options go first."""
+    return geotween.morph(origin, target, "morph", **{"matching": "rotation", **options})

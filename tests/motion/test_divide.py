@@ -65,11 +65,22 @@ def test_many_to_many_pairs_each_piece_with_its_counterpart() -> None:
     assert spl.target_pieces[0].equals(c)
 
 
-def test_without_a_partner_it_goes_to_its_centroid_and_comes_from_it() -> None:
-    spl = division([box(0, 0, 2, 2)], [box(10, 0, 12, 2)])
+def test_without_a_partner_it_goes_to_its_innermost_point_and_comes_from_it() -> None:
+    spl = division([box(0, 0, 2, 2)], [Polygon([(10, 0), (14, 0), (10, 3)])])
     assert spl.indices.tolist() == [[-1, 0], [0, -1]]
-    assert spl.origin_pieces[0].equals(Point(11, 1))
-    assert spl.target_pieces[1].equals(Point(1, 1))
+    assert spl.origin_pieces[0].distance(Point(11, 1)) < 1e-12
+    assert spl.target_pieces[1].distance(Point(1, 1)) < 1e-12
+
+
+def test_by_centroid_only_what_lies_outside_goes_to_the_innermost_point() -> None:
+    triangle = Polygon([(0, 0), (4, 0), (0, 3)])
+    bow = Polygon([(20, 0), (29, 0), (29, 1), (21, 1), (21, 9), (20, 9)])
+    related = correspond(unkeyed(triangle, bow), unkeyed())
+    inside, outside = divide(related, births="centroid").target_pieces
+    assert inside.equals(triangle.centroid)
+    assert not bow.contains(bow.centroid)
+    assert outside.equals(divide(related).target_pieces[1])
+    assert bow.contains(outside)
 
 
 @pytest.mark.parametrize(("origin", "target"), [([], [SQUARE]), ([SQUARE], []), ([], [])])

@@ -40,10 +40,10 @@ def regions(*rings: ArrayLike, layer: str = "regions") -> PolygonSet:
     return polygon_set(Feature(Polygon(np.asarray(ring)), layer=layer) for ring in rings)
 
 
-def track(*keys: ArrayLike, number: int = 0, layer: str = "regions") -> Track:
+def track(*keys: ArrayLike, number: int = 0, layer: str = "regions", keyed: bool = False) -> Track:
     vertices = np.array(keys, dtype=float)
     count = vertices.shape[1]
-    who = Identity(number, layer=layer)
+    who = Identity(number, layer=layer, keyed=keyed)
     return Track(
         who,
         (who, who),
@@ -116,9 +116,15 @@ def test_an_end_that_is_missed_by_a_tenth() -> None:
 
 def test_pieces_of_each_others_feature_are_inexact() -> None:
     left, right = SQUARE, shifted(1, 0)
-    stays = regions(left, right)
-    tracks = [track(left, left, number=1), track(right, right, number=0)]
+    stays = polygon_set(Feature(Polygon(ring), key=key) for key, ring in enumerate((left, right)))
+    tracks = [track(left, left, number=1, keyed=True), track(right, right, keyed=True)]
     assert measure(tracks, stays, stays).inexact_ends == 1
+
+
+def test_pieces_of_each_others_feature_without_keys_look_the_same() -> None:
+    left, right = SQUARE, shifted(1, 0)
+    tracks = [track(left, left, number=1), track(right, right)]
+    assert measure(tracks, regions(left, right), regions(left, right)).inexact_ends == 0
 
 
 def test_a_layer_nobody_asked_for_is_inexact() -> None:

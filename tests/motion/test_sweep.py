@@ -12,12 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
-import geotween
 from geotween.data.polygons import Identity
 from geotween.motion.looks import polygons_at
 from geotween.motion.sweep import Proof, sweep
 from geotween.motion.tracks import Track
-from tests.motion.shapes import blobs, hulls, seeds, star, tiles
+from tests.motion.shapes import blobs, hulls, seeds, star, tiles, travelled
 
 Floats = NDArray[np.float64]
 
@@ -164,6 +163,13 @@ def test_a_hole_that_leaves_stays_wrong_outside() -> None:
     start, end = np.vstack([SQUARE, HOLE]), np.vstack([SQUARE, shifted(HOLE, 4, 0)])
     kind, _, *span = one(track(start, end, offsets=[0, 4, 8]))
     assert (kind, tuple(span)) == ("self-crossing", about(0.1, 1))
+
+
+def test_a_tiny_hole_that_opens_outside_of_a_ring_that_crosses_itself_later() -> None:
+    tie, tiny = SQUARE[[0, 1, 3, 2]], (HOLE - 0.5) * 1e-4 + 1.5
+    keys = ((SQUARE, np.full((4, 2), 1.5)), (SQUARE, tiny), (tie, tiny))
+    kind, _, *span = one(track(*(np.vstack(key) for key in keys), offsets=[0, 4, 8]))
+    assert (kind, tuple(span)) == ("self-crossing", about(0, 1))
 
 
 def test_two_holes_that_meet() -> None:
@@ -347,7 +353,7 @@ def test_stars_in_any_rotation_agree_with_frames(seed: int) -> None:
 def test_morphs_agree_with_frames(origin: object, target: object, seed: int) -> None:
     assert callable(origin)
     assert callable(target)
-    morph = geotween.morph(origin(1 + seed % 5, seed), target(1 + seed % 4, seed + 1))
+    morph = travelled(origin(1 + seed % 5, seed), target(1 + seed % 4, seed + 1))
     assert_agrees_with_frames(morph.tracks, both_ways=False)
 
 

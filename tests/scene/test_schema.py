@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from jsonschema import Draft202012Validator
 
 from geotween.cli import main
-from geotween.motion import correspond, divide, match, morph
+from geotween.motion import correspond, divide, match, paths, techniques
 from geotween.scene.model import Motion
 from geotween.scene.read import scene_schema
 
@@ -94,10 +94,12 @@ def test_schema_beside_the_scenes_is_the_one_that_is_printed() -> None:
 @pytest.mark.parametrize(
     ("field", "registry"),
     [
-        ("method", morph.METHODS),
+        ("method", techniques.METHODS),
         ("correspondence", correspond.TECHNIQUES),
         ("division", divide.TECHNIQUES),
         ("matching", match.TECHNIQUES),
+        ("path", paths.TECHNIQUES),
+        ("annexation", techniques.ANNEXATIONS),
     ],
 )
 def test_scene_may_name_just_the_techniques_that_there_are(field: str, registry: Any) -> None:

@@ -87,10 +87,12 @@ class PolygonSet:
 
     def in_layer(self, layer: str) -> PolygonSet:
         """The polygons of one layer."""
-        chosen = np.array([i.layer == layer for i in self.identities], dtype=bool)
-        return PolygonSet(
-            self.polygons[chosen], tuple(i for i in self.identities if i.layer == layer)
-        )
+        return self.chosen(np.array([i.layer == layer for i in self.identities], dtype=bool))
+
+    def chosen(self, mask: NDArray[np.bool_]) -> PolygonSet:
+        """The polygons where a mask (n,) is True."""
+        identities = tuple(i for i, kept in zip(self.identities, mask, strict=True) if kept)
+        return PolygonSet(self.polygons[mask], identities)
 
 
 def polygon_set(features: Iterable[Feature]) -> PolygonSet:

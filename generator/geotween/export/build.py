@@ -19,7 +19,9 @@ from geotween.export.page import page, render
 from geotween.export.svg import animated_svg, still_svg
 from geotween.export.words import words
 from geotween.motion.measure import measure
-from geotween.motion.morph import Morph, plan, resolve
+from geotween.motion.morph import Morph, plan
+from geotween.motion.techniques import resolve
+from geotween.scene.model import Motion
 
 FORMATS = ("html", "svg")
 INDEX = "index.html"
@@ -29,14 +31,14 @@ INDEX = "index.html"
 class TransitionReport:
     """What happened between two steps: their labels, the pieces that moved, and measures.
 
-    ``valid`` tells whether it was proved that polygons cross nowhere on the way; ``matchings``
-    which matching each layer was given.
+    ``valid`` tells whether it was proved that polygons cross nowhere on the way; ``ways`` how many
+    pieces of each layer were moved in which way.
     """
 
     steps: tuple[str, str]
     pieces: int
     valid: bool
-    matchings: Mapping[str, str]
+    ways: Mapping[str, Mapping[str, int]]
     measures: Mapping[str, float]
 
 
@@ -100,7 +102,14 @@ def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
     """The motion of each transition, and all problems with their steps named."""
     motion = scene.model.motion
     techniques = resolve(
-        motion.method, motion.correspondence, motion.division, motion.matching, motion.radius
+        motion.method,
+        motion.correspondence,
+        motion.division,
+        motion.matching,
+        motion.path,
+        motion.radius,
+        motion.annexation,
+        _exceptions(motion),
     )
     morphs, problems = [], list(scene.problems)
     for before, after in zip(scene.steps[:-1], scene.steps[1:], strict=True):
@@ -110,6 +119,14 @@ def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
             replace(p, steps=(before.label, after.label)) for p in planned.certificate.problems
         ]
     return morphs, problems
+
+
+def _exceptions(motion: Motion) -> dict[tuple[str, str], str]:
+    """The methods that a scene names for layers, classes and keys."""
+    rules = {"layer": motion.by_layer, "class": motion.by_class, "key": motion.by_key}
+    return {
+        (what, name): rule.method for what, those in rules.items() for name, rule in those.items()
+    }
 
 
 def transition_reports(
@@ -125,9 +142,7 @@ def transition_reports(
             measures |= {name.replace("_", " "): value for name, value in found.items()}
         steps = (before.label, after.label)
         reports.append(
-            TransitionReport(
-                steps, len(m.tracks), certificate.valid, certificate.matchings, measures
-            )
+            TransitionReport(steps, len(m.tracks), certificate.valid, certificate.ways, measures)
         )
     return tuple(reports)
 

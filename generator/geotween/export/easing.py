@@ -28,6 +28,14 @@ def ease(spline: Spline | None, share: float) -> float:
     return float(_at(points, _solve(points[:, 0], share))[1])
 
 
+def share_at(spline: Spline | None, t: float) -> float:
+    """The share of the transition's duration at which t, after easing, is reached."""
+    if spline is None or t <= 0 or t >= 1:
+        return min(max(t, 0.0), 1.0)
+    points = _points(spline)
+    return float(_at(points, _solve(points[:, 1], t))[0])
+
+
 def segments(
     spline: Spline | None, times: Sequence[float]
 ) -> list[tuple[float, float, Spline | None]]:

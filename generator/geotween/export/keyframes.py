@@ -12,7 +12,7 @@ from geotween.data.load import Scene
 from geotween.data.problems import Problem, Severity
 from geotween.export.bundle import Member, shapes_of
 from geotween.export.easing import EASINGS, Spline
-from geotween.export.page_grid import GridTrack, Page, fit_page, moving, resting
+from geotween.export.page_grid import GridTrack, Page, fit_page, on_grid, resting
 from geotween.export.paint import GHOST, Paint, Painter
 from geotween.export.shapes import DRAWN_IN_ORDER, Group, Shape, Slot
 from geotween.export.timeline import Span, timeline
@@ -100,7 +100,8 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
             shapes = shapes_of(members, painter)
         else:
             tracks = morphs[span.step].tracks
-            members = [Member(t.identity, t.ends, moving(t, page)) for t in tracks]
+            drawn = zip(tracks, on_grid(tracks, page), strict=True)
+            members = [Member(t.identity, t.ends, track) for t, track in drawn]
             shapes = shapes_of(members, painter)
             if model.motion.ghost == "origin" and rests[span.step]:
                 slot = Slot(Group("ghost", (1.0, 1.0)), "ghost", "")

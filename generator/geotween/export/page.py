@@ -8,19 +8,19 @@ import json
 from functools import cache
 from typing import Any
 
-import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from geotween.export.coded import coded, differences
 from geotween.export.keyframes import Keyframes
-from geotween.export.page_grid import GRID, GridTrack
+from geotween.export.page_grid import GRID
 from geotween.export.paint import Paint
 from geotween.export.resources import resource
 from geotween.export.shapes import Shape
 from geotween.export.svg import still_svg
 from geotween.scene.model import SceneFile
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 
 
 def page(frames: Keyframes, model: SceneFile, *, svg_href: str, index_href: str) -> str:
@@ -62,12 +62,12 @@ def keyframes_json(frames: Keyframes) -> dict[str, Any]:
     found = dict.fromkeys(slot.group for slot in slots)
     groups = {group: place for place, group in enumerate(found)}
     paints: dict[Paint, int] = {}
-    tracks: dict[str, int] = {}
+    told = coded(t for _, shapes in frames.spans for shape in shapes for t in shape.tracks)
 
     def shape(value: Shape) -> dict[str, Any]:
         found: dict[str, Any] = {
             "slot": slots[value.slot],
-            "tracks": [tracks.setdefault(_track(t), len(tracks)) for t in value.tracks],
+            "tracks": differences([told.numbers[track] for track in value.tracks]),
             "paint": [paints.setdefault(p, len(paints)) for p in value.paints],
         }
         if value.slot.code:
@@ -100,28 +100,10 @@ def keyframes_json(frames: Keyframes) -> dict[str, Any]:
         ],
         "groups": [{"layer": g.layer, "opacity": g.opacity} for g in groups],
         "slots": [{"group": groups[s.group], "kind": s.kind, "key": s.key} for s in slots],
-        "tracks": [json.loads(text) for text in tracks],
+        **told.shared,
+        "tracks": told.tracks,
         "spans": spans,
     }
-
-
-def _track(track: GridTrack) -> str:
-    """A track as JSON.
-
-    Positions at the first key time, then displacements; both as differences along the vertices.
-    """
-    moves = np.diff(track.vertices, axis=0, prepend=0)
-    steps = np.diff(moves, axis=1, prepend=0)
-    found: dict[str, Any] = {
-        "times": track.times,
-        "rings": np.diff(track.offsets).tolist(),
-        "vertices": [values.ravel().tolist() for values in steps],
-    }
-    if track.seams.any():
-        starts = np.flatnonzero(np.append(True, track.seams[1:] != track.seams[:-1]))
-        counts = np.diff(np.append(starts, len(track.seams)))
-        found["seams"] = np.column_stack([track.seams[starts], counts]).ravel().tolist()
-    return json.dumps(found, separators=(",", ":"))
 
 
 def _island(value: object) -> str:

@@ -13,33 +13,33 @@ from geotween.export.page_grid import GRID, GridTrack
 from geotween.export.shapes import Shape
 from geotween.motion.rings import Offsets, next_vertex
 
-_PER_PIXEL = round(1 / GRID)
+# Moving vertices of a film are written in hundredths of a pixel at the moments between the ends of
+# their ways: rounded like the ends, they would leave the line that a neighbour has there.
+FINE = 0.01
 
 
-def path_texts(shape: Shape) -> list[tuple[float, str]]:
-    """The path at each key time of a shape; one entry if it is still.
+def path_texts(shape: Shape, life: tuple[float, float] = (0.0, 1.0)) -> list[tuple[float, str]]:
+    """The path at each key time of a shape whose tracks are there for a time; one if it is still.
 
     All of a shape's texts have the same sequence of commands, as SMIL demands.
     """
-    times = sorted({t for track in shape.tracks for t in track.times} | {0.0})
+    times = {life[0]}
+    if not all(track.still for track in shape.tracks):
+        times |= {life[1], *(t for k in shape.tracks if not k.still for t in k.times)}
+    unit = GRID if all(track.film is None for track in shape.tracks) else FINE
     lines = [(track, list(_lines(shape, track))) for track in shape.tracks]
-    return [(t, "".join(_track_text(_at(track, t), of_track) for track, of_track in lines))
-            for t in times]  # fmt: skip
+    return [
+        (t, "".join(_track_text(track, t, of_track, unit) for track, of_track in lines))
+        for t in sorted(times)
+        if life[0] <= t <= life[1]
+    ]
 
 
-def _track_text(points: NDArray[np.int64], lines: list[tuple[NDArray[np.intp], bool]]) -> str:
-    return "".join(_text(points[line], closed) for line, closed in lines)
-
-
-def _at(track: GridTrack, t: float) -> NDArray[np.int64]:
-    """Grid positions at a key time of any track of the shape."""
-    if track.still:
-        return np.asarray(track.vertices[0])
-    if t in track.times:
-        return np.asarray(track.vertices[track.times.index(t)])
-    flat = track.vertices.reshape(len(track.times), -1)
-    values = [np.interp(t, track.times, column) for column in flat.T]
-    return np.rint(np.reshape(values, (-1, 2))).astype(np.int64)
+def _track_text(
+    track: GridTrack, t: float, lines: list[tuple[NDArray[np.intp], bool]], unit: float
+) -> str:
+    points = np.rint(track.at(t) * (GRID / unit)).astype(np.int64)
+    return "".join(_text(points[line], closed, unit) for line, closed in lines)
 
 
 def _lines(shape: Shape, track: GridTrack) -> Iterator[tuple[NDArray[np.intp], bool]]:
@@ -74,27 +74,28 @@ def runs(chosen: NDArray[np.bool_], offsets: Offsets) -> Iterator[tuple[NDArray[
             yield np.append(edges, following[edges[-1]]), False
 
 
-def _text(points: NDArray[np.int64], closed: bool) -> str:
+def _text(points: NDArray[np.int64], closed: bool, unit: float) -> str:
     steps = np.diff(points, axis=0)
-    return f"M{_numbers(points[0])}l{_numbers(steps.ravel())}{'z' if closed else ''}"
+    start, way = _numbers(points[0], unit), _numbers(steps.ravel(), unit)
+    return f"M{start}l{way}{'z' if closed else ''}"
 
 
-def _numbers(values: Iterable[int]) -> str:
-    """Grid steps as pixels; a minus sign separates, so that no space is needed before it."""
-    joined = " ".join(_number(int(v)) for v in values)
+def _numbers(values: Iterable[int], unit: float) -> str:
+    """Steps of a unit as pixels; a minus sign separates, so that no space is needed before it."""
+    joined = " ".join(_number(int(v), unit) for v in values)
     return joined.replace(" -", "-")
 
 
 @lru_cache(maxsize=65536)
-def _number(value: int) -> str:
-    text = f"{value / _PER_PIXEL:.1f}".removesuffix(".0")
+def _number(value: int, unit: float) -> str:
+    text = f"{value / round(1 / unit):.2f}".rstrip("0").removesuffix(".")
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
 def closed_path(tracks: Iterable[GridTrack]) -> str:
     """All rings of tracks that rest, as one path."""
     return "".join(
-        _text(track.vertices[0, start:end], True)
+        _text(track.vertices[0, start:end], True, GRID)
         for track in tracks
         for start, end in zip(track.offsets[:-1], track.offsets[1:], strict=True)
     )

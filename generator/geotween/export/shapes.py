@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 from geotween.export.page_grid import GridTrack
@@ -49,4 +50,14 @@ class Shape:
 
     @property
     def still(self) -> bool:
-        return all(track.still for track in self.tracks)
+        """Whether nothing moves, comes or goes."""
+        return all(track.still and track.life == (0.0, 1.0) for track in self.tracks)
+
+    def parts(self) -> list[tuple[tuple[float, float], tuple[GridTrack, ...]]]:
+        """The tracks that are there, since when and until when, after easing; in order of time."""
+        moments = sorted({moment for track in self.tracks for moment in track.life})
+        found = [
+            ((start, end), tuple(t for t in self.tracks if t.life[0] <= start and end <= t.life[1]))
+            for start, end in pairwise(moments)
+        ]
+        return [(life, tracks) for life, tracks in found if tracks]

@@ -8,12 +8,13 @@ animation writes a value twice.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from svgwrite.animate import Animate
 from svgwrite.base import BaseElement
 
-from geotween.export.easing import Spline, segments
+from geotween.export.easing import Spline, segments, share_at
 from geotween.export.elements import paint_attributes, path_element, px
 from geotween.export.keyframes import Keyframes
 from geotween.export.paint import Paint
@@ -29,22 +30,33 @@ class PathMaker:
         self.frames, self.slot = frames, slot
         self.total = frames.duration
         self.still: dict[tuple[str, Paint], BaseElement] = {}
-        self.shown: dict[BaseElement, list[tuple[int, int]]] = {}
+        self.shown: dict[BaseElement, list[tuple[float, float]]] = {}
 
     def add(self, span: Span, shape: Shape) -> None:
-        """Draw a shape of this slot in a span, unless it is seen at no time."""
-        times = _visible(span, shape, self.frames)
-        if times is None:
-            return
-        texts = path_texts(shape)
+        """Draw a shape of this slot in a span, unless it is seen at no time.
+
+        Where tracks come and go, each part of the time has a path of its own.
+        """
+        for life, tracks in shape.parts():
+            times = _visible(span, shape, life, self.frames)
+            if times is not None:
+                self._draw(span, replace(shape, tracks=tracks), life, times)
+
+    def _draw(
+        self, span: Span, shape: Shape, life: tuple[float, float], times: tuple[float, float]
+    ) -> None:
+        texts = path_texts(shape, life)
         one, other = shape.paints
-        same = shape.still and one == other and not self.slot.code
+        still = len(texts) == 1
+        same = still and one == other and not self.slot.code
         if same and (texts[0][1], one) in self.still:
             self.shown[self.still[texts[0][1], one]].append(times)
             return
-        path = path_element(self.slot, _solid(one, other), texts[0][1] if shape.still else "")
+        path = path_element(self.slot, _solid(one, other), texts[0][1] if still else "")
         self.shown[path] = [times]
-        if not shape.still:
+        if not still:
+            if life[0] > 0:
+                texts = [(0.0, texts[0][1]), *texts]
             path.add(self._animate(span, "d", texts, self.frames.easing))
         if same:
             self.still[texts[0][1], one] = path
@@ -103,19 +115,31 @@ def animated(frames: Keyframes, slots: list[Slot]) -> Iterable[tuple[Slot, list[
         yield slot, makers[slot].finished()
 
 
-def _visible(span: Span, shape: Shape, frames: Keyframes) -> tuple[int, int] | None:
-    """When a shape is seen, in ms; a last rest that does not loop lasts for ever."""
+def _visible(
+    span: Span, shape: Shape, life: tuple[float, float], frames: Keyframes
+) -> tuple[float, float] | None:
+    """When a shape is seen for a part of its span, in ms; at no time for None.
+
+    A last rest that does not loop lasts for ever. Where one part gives way to the next both say
+    the same moment.
+    """
     last = span is frames.spans[-1][0] and not frames.loop
     if not span.length and not last:
         return None
     first, end = shape.show or (0.0, 1.0)
-    stop = span.start + round(end * span.length)
-    return span.start + round(first * span.length), max(stop, frames.duration + 1) if last else stop
+    first, end = (
+        max(first, share_at(frames.easing, life[0])),
+        min(end, share_at(frames.easing, life[1])),
+    )
+    start, stop = (round(span.start + part * span.length, 3) for part in (first, end))
+    if last:
+        return start, max(stop, frames.duration + 1)
+    return (start, stop) if start < stop else None
 
 
-def show(element: BaseElement, times: list[tuple[int, int]], frames: Keyframes) -> None:
+def show(element: BaseElement, times: Sequence[tuple[float, float]], frames: Keyframes) -> None:
     """Make an element visible between some times and hidden otherwise."""
-    changes: dict[int, str] = {}
+    changes: dict[float, str] = {}
     for start, end in sorted(times):
         if changes.get(start) == "hidden":
             del changes[start]

@@ -94,8 +94,7 @@ def _align(one: Curve, other: Curve, work: Work, size: float, whole: int) -> NDA
     n, m = len(one), len(other)
     diagonal = np.arange(n + m - 1)
     if n * m <= whole or min(n, m) <= COARSER:
-        first = np.maximum(diagonal - m + 1, 0)
-        return _solve(one, other, first, min(n, m), work, size)
+        return _solve_whole(one, other, work, size)
     here, there = _coarser(one), _coarser(other)
     coarse = _align(
         Curve.through(one.points[here]), Curve.through(other.points[there]), work, size, whole
@@ -117,9 +116,16 @@ def _coarser(curve: Curve) -> NDArray[np.intp]:
 
 
 def _steps(
-    one: Curve, other: Curve, i: NDArray[np.intp], j: NDArray[np.intp], work: Work, size: float
+    one: Curve,
+    other: Curve,
+    i: NDArray[np.intp],
+    j: NDArray[np.intp],
+    work: Work,
+    size: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The work of the steps to cells (i, j): along both curves, along one, along the other.
+
+    The indices are broadcast against each other.
 
     Displacements, squared, count by the length of boundary that they stand for: half of each
     edge. With no edge on the other side, an edge is taken in, which strains it by its length.
@@ -161,6 +167,49 @@ def _square(vector: Points) -> NDArray[np.float64]:
 
 def _cross(one: Points, other: Points) -> NDArray[np.float64]:
     return np.asarray(one.real * other.imag - one.imag * other.real)
+
+
+def _solve_whole(one: Curve, other: Curve, work: Work, size: float) -> NDArray[np.intp]:
+    """The best path through the whole table: what a band as wide as the table gives, but faster.
+
+    Rows of the arrays are the table's diagonals, columns the points of the shorter curve.
+    """
+    n, m = len(one), len(other)
+    width, diagonals = min(n, m), n + m - 1
+    along = np.full((diagonals, 2, width), np.inf)  # a step along the shorter curve, the longer
+    both = np.full((diagonals, width), np.inf)
+    short, long = (0, 1) if n <= m else (1, 0)
+    tables = [_slanted(costs, n, m) for costs in (both, along[:, short], along[:, long])]
+    rows = max(CHUNK // m, 1)
+    for start in range(0, n, rows):
+        i = np.arange(start, min(start + rows, n))[:, None]
+        costs = _steps(one, other, i, np.arange(m), work, size)
+        for table, part in zip(tables, costs, strict=True):
+            table[start : start + rows] = part
+    # The work up to a cell, with a column and two diagonals to spare; infinite outside the table.
+    spent = np.full((diagonals + 2, width + 1), np.inf)
+    spent[2, 1] = 0.0
+    # For each cell those before it and beside it on the last diagonal: shape (diagonals, 2, width).
+    last = np.lib.stride_tricks.sliding_window_view(spent[1:-1], width, axis=1)
+    rows_of = (both, along, along[:, 0], along[:, 1], spent[:-2, :-1], last, spent[2:, 1:])
+    for x, yz, y, z, before, beside, cells in list(zip(*rows_of, strict=True))[1:]:
+        x += before
+        yz += beside
+        np.minimum(y, z, out=cells)
+        np.minimum(cells, x, out=cells)
+    y, z = along[:, 0], along[:, 1]
+    single = np.minimum(y, z) < both
+    starts = [0] * diagonals
+    if n <= m:
+        return _way_back(single, z < y, starts, n, m)
+    return _way_back(single, z <= y, starts, m, n)[:, ::-1]
+
+
+def _slanted(rows: NDArray[np.float64], n: int, m: int) -> NDArray[np.float64]:
+    """A table (n, m) whose cell (i, j) is that of row i + j, in the column of the shorter side."""
+    down, right = rows.strides
+    strides = (down + right, down) if n <= m else (down, down + right)
+    return np.lib.stride_tricks.as_strided(rows, (n, m), strides)
 
 
 def _solve(

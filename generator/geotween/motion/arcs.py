@@ -64,6 +64,16 @@ def points_along(ring: Points, places: Places) -> Points:
     return np.asarray(ring[edge] + share * way)
 
 
+def stretch(ring: Points, start: float, end: float) -> tuple[Places, Points]:
+    """The places of a stretch's ends and of the vertices in between, and the points there.
+
+    The end is not the smaller number; where the stretch passes the ring's first vertex, it is
+    beyond the count.
+    """
+    places = np.concatenate([[start], np.arange(np.floor(start) + 1, np.ceil(end)), [end]])
+    return places, points_along(ring, places)
+
+
 def outer_places(arc: Places, inner: Places) -> Places:
     """Places along an arc as places along its ring."""
     edge = np.minimum(inner.astype(np.intp), len(arc) - 2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,9 +11,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geotween.data.polygons import RELATIVE_TOLERANCE
 from geotween.data.problems import Problem
+from geotween.motion.areas import area_over_time
+from geotween.motion.common import moved_shares
+from geotween.motion.correspond import Correspondence
 from geotween.motion.divide import Division
 from geotween.motion.sweep import Proof, Violation, sweep
+from geotween.motion.techniques import FRONT
 from geotween.motion.tracks import Track
 
 Objects = NDArray[np.object_]
@@ -23,23 +29,27 @@ PARTITION_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class LayerMotion:
-    """The motion of one layer: its tracks, the division behind them, and the matching taken.
+    """The motion of one layer: its tracks, in what way each was made, and what is behind them.
 
-    ``near`` are the tracks where coordinates have digits to spare, which may be elsewhere than
-    where they are drawn.
+    ``division`` is of what travels, ``swept`` what corresponds in the rest, which a front moves.
+    ``ways`` are parallel to ``tracks``: names of matchings, or ``front``. ``near`` are the tracks
+    where coordinates have digits to spare, which may be elsewhere than where they are drawn;
+    ``known`` is what planning had to prove already.
     """
 
     layer: str
     tracks: tuple[Track, ...]
+    ways: tuple[str, ...]
     division: Division
+    swept: Correspondence
     problems: tuple[Problem, ...]
-    matching: str
     near: tuple[Track, ...]
+    known: Proof | None = None
 
     @cached_property
     def proof(self) -> Proof:
         """What is wrong with the tracks, at any t in [0, 1]."""
-        return sweep(self.near)
+        return self.known or sweep(self.near)
 
 
 @dataclass(frozen=True)
@@ -47,14 +57,15 @@ class Certificate:
     """What was proved about a transition, what was measured, and what was met on the way.
 
     ``valid`` is True where it was proved, for all t in [0, 1], that every polygon is simple and
-    that no two of a layer overlap (``motion/sweep.py`` says up to which rounding), and that the
-    pieces make up their polygons. ``matchings`` tells by layer which one was taken.
+    that no two of a layer overlap (``motion/sweep.py`` says up to which rounding), that the pieces
+    make up their polygons, and that common boundary rests. ``ways`` tells by layer in which ways
+    its pieces were moved, and how many in each.
     """
 
     valid: bool
     problems: tuple[Problem, ...]
     measures: dict[str, float]
-    matchings: dict[str, str]
+    ways: dict[str, dict[str, int]]
 
 
 def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Certificate:
@@ -62,8 +73,41 @@ def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Cer
 
     ``partition error`` is the largest area, relative to its polygon, by which the pieces of one
     polygon miss or exceed it; ``pieces`` and ``mends`` are counts; ``crossing`` is the share of
-    time in which some polygon crosses itself or another one.
+    time in which some polygon crosses itself or another one; ``common boundary moved`` the
+    share of it that does not rest. ``area off linear`` and ``area overshoot`` are the most by
+    which a layer's area leaves its straight way, and goes beyond both its ends, as shares of the
+    larger end: computed from the motion itself, for all t.
     """
+    partition, exact, met = _partition(layers)
+    moved = [_boundary_moved(layer) for layer in layers]
+    off, overshoot = zip(*(_area(layer) for layer in layers), strict=True)
+    measures = {
+        "partition error": partition,
+        "pieces": float(sum(len(layer.division.indices) for layer in layers)),
+        "mends": float(sum(len(layer.division.problems) for layer in layers)),
+        "crossing": _time_of(v for layer in layers for v in layer.proof.violations),
+        "common boundary moved": max(moved),
+        "area off linear": max(off),
+        "area overshoot": max(overshoot),
+    }
+    met = [*(problem for layer in layers for problem in layer.problems), *met]
+    for layer in layers:
+        met += _crossings(layer)
+    if max(moved) > 0:
+        message = "boundary that both ends have in common moves on the way"
+        hint = "matching: trajectory pins it"
+        share = max(moved)
+        met.append(Problem("moved", "warning", message, (), "", share, "of its places", hint))
+    return Certificate(
+        exact and not any(moved) and all(layer.proof.clean for layer in layers),
+        (*problems, *met),
+        measures,
+        {layer.layer: _counted(layer) for layer in layers},
+    )
+
+
+def _partition(layers: Sequence[LayerMotion]) -> tuple[float, bool, list[Problem]]:
+    """The partition error, whether it is no more than rounding, and a problem where it is more."""
     divisions = [layer.division for layer in layers]
     sides = [
         side
@@ -75,27 +119,43 @@ def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Cer
     ]
     differences = [_differences(*side) for side in sides]
     error = max(float(found.max(initial=0)) for found in differences)
-    measures = {
-        "partition error": error,
-        "pieces": float(sum(len(division.indices) for division in divisions)),
-        "mends": float(sum(len(division.problems) for division in divisions)),
-        "crossing": _time_of(v for layer in layers for v in layer.proof.violations),
-    }
-    met = [problem for layer in layers for problem in layer.problems]
     allowed = [_rounding(whole) for whole, _, _ in sides]
-    exact = not any((d > a).any() for d, a in zip(differences, allowed, strict=True))
-    if not exact:
-        message = "pieces miss or exceed their polygon"
-        hint = "look for slivers in the data"
-        met.append(Problem("partition", "error", message, (), "", error, "of its area", hint))
-    for layer in layers:
-        met += _crossings(layer)
-    return Certificate(
-        exact and all(layer.proof.clean for layer in layers),
-        (*problems, *met),
-        measures,
-        {layer.layer: layer.matching for layer in layers},
+    if not any((d > a).any() for d, a in zip(differences, allowed, strict=True)):
+        return error, True, []
+    message, hint = "pieces miss or exceed their polygon", "look for slivers in the data"
+    return (
+        error,
+        False,
+        [Problem("partition", "error", message, (), "", error, "of its area", hint)],
     )
+
+
+def _counted(layer: LayerMotion) -> dict[str, int]:
+    """How many pieces were moved in which way; a front counts the things that it moves."""
+    pieces = enumerate(zip(layer.ways, layer.tracks, strict=True))
+    found = {(way, track.ends if way == FRONT else k) for k, (way, track) in pieces}
+    return dict(Counter(way for way, _ in sorted(found, key=str)))
+
+
+def _boundary_moved(layer: LayerMotion) -> float:
+    """The largest share of a track's common boundary that moves; none of a front's does."""
+    tracks = [t for t, way in zip(layer.near, layer.ways, strict=True) if way != FRONT]
+    if not tracks:
+        return 0.0
+    every = np.concatenate([track.vertices.reshape(-1, 2) for track in tracks])
+    reach = float(np.ptp(every, axis=0).max(initial=0)) if len(every) else 0.0
+    return float(moved_shares(tracks, RELATIVE_TOLERANCE * reach).max(initial=0))
+
+
+def _area(layer: LayerMotion) -> tuple[float, float]:
+    """How far a layer's area gets from its straight way, and beyond its ends; as shares."""
+    area = area_over_time(layer.near)
+    low, high = sorted(area.ends)
+    if not high:
+        return 0.0, 0.0
+    least, most = area.extremes()
+    off = max(map(abs, area.extremes(linear=True)))
+    return off / high, max(0.0, low - least, most - high) / high
 
 
 def _crossings(layer: LayerMotion) -> list[Problem]:

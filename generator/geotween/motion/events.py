@@ -53,26 +53,25 @@ class Events:
 
 def events_of(tracks: Sequence[Track], tolerance: float) -> Events:
     times = np.unique(np.concatenate([track.times for track in tracks]))
-    places = np.concatenate(
-        [
-            track.vertices
-            if np.array_equal(track.times, times)
-            else np.stack([track.at(t) for t in times.tolist()])
-            for track in tracks
-        ],
-        axis=1,
-    )
-    counts = [np.diff(track.offsets) for track in tracks]
-    offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.intp)
-    owner = np.repeat(np.arange(len(tracks)), [len(count) for count in counts])
-    movings = [Moving.of(pair, offsets, owner, tolerance) for pair in _pairs(places)]
-    never = np.zeros(len(owner), dtype=bool)
-    alive = [never, *(np.diff(moving.offsets) > 0 for moving in movings), never]
-    found = [
-        _Span(moving, float(times[k]), float(times[k + 1]), alive[k], alive[k + 2]).events()
-        for k, moving in enumerate(movings)
+    owner = np.repeat(np.arange(len(tracks)), [len(track.offsets) - 1 for track in tracks])
+    lives = np.array([track.life for track in tracks])
+    spans = list(pairwise(times.tolist()))
+    there = [(lives[:, 0] <= start) & (lives[:, 1] >= end) for start, end in spans]
+    movings = [
+        _moving(
+            [tracks[k] for k in np.flatnonzero(mine).tolist()], span, owner[mine[owner]], tolerance
+        )
+        for span, mine in zip(spans, there, strict=True)
     ]
-    changes = [(one != other).any() for one, other in pairwise(alive[1:-1])]
+    alive = np.zeros((len(spans) + 2, len(owner)), dtype=bool)
+    for k, moving in enumerate(movings):
+        alive[k + 1, there[k][owner]] = np.diff(moving.offsets) > 0
+    found = [
+        _Span(moving, *span, alive[k, mine], alive[k + 2, mine], lives).events()
+        for k, (moving, span) in enumerate(zip(movings, spans, strict=True))
+        for mine in (there[k][owner],)
+    ]
+    changes = (alive[1:-2] != alive[2:-1]).any(axis=1)
     breaks = [times[1:-1][changes], *(events.instants[:, 1] for events in found)]
     return Events(
         np.concatenate([events.wrong for events in found]),
@@ -85,19 +84,30 @@ def events_of(tracks: Sequence[Track], tolerance: float) -> Events:
     )
 
 
-def _pairs(places: Floats) -> list[Floats]:
-    return [places[k : k + 2] for k in range(len(places) - 1)]
+def _moving(
+    tracks: list[Track], span: tuple[float, float], owner: Numbers, tolerance: float
+) -> Moving:
+    """Tracks between two key times; ``owner`` are the tracks of their rings."""
+    places = [np.stack([track.at(t) for t in span]) for track in tracks]
+    counts = [np.diff(track.offsets) for track in tracks]
+    offsets = np.concatenate([[0], *map(np.cumsum, [np.concatenate(counts)] if counts else [])])
+    every = np.concatenate(places, axis=1) if places else np.empty((2, 0, 2))
+    return Moving.of(every, offsets.astype(np.intp), owner, tolerance)
 
 
 @dataclass(frozen=True, eq=False)
 class _Span:
-    """A layer between two key times; ``before`` and ``after`` (r,) tell whose rings live beyond."""
+    """A layer between two key times; ``before`` and ``after`` (r,) tell whose rings live beyond.
+
+    ``lives`` (k, 2) are those of all tracks.
+    """
 
     moving: Moving
     start: float
     end: float
     before: Flags
     after: Flags
+    lives: Floats
 
     def events(self) -> Events:
         """What happens in between."""
@@ -166,8 +176,8 @@ class _Span:
 
         moments = np.column_stack([turns(twice), np.zeros(len(rings)), np.ones(len(rings))])
         zero = (np.abs(value(twice, moments)) <= least[:, None]) & ~thin[:, None]
-        zero &= (moments > 0) | self.before[rings, None]
-        zero &= (moments < 1) | self.after[rings, None]
+        zero &= (moments > ROUNDING) | self.before[rings, None]
+        zero &= (moments < 1 - ROUNDING) | self.after[rings, None]
         rows = [
             (track[row], self._global(moments[row, column]), *place)
             for row, column in np.argwhere(zero).tolist()
@@ -191,19 +201,20 @@ class _Span:
     def _instants(self, corner: Numbers, edge: Numbers, t: Floats, told: Rows) -> Floats:
         """Moments (k, 4) at which a ring touches itself, but for those already told."""
         moving, times = self.moving, self._global(t)
-        kept = (times > ROUNDING) & (times < 1 - ROUNDING)
         track = moving.track[moving.ring[corner]]
+        since, until = self.lives[track].T
+        kept = (times > since + ROUNDING) & (times < until - ROUNDING)
         for number in np.unique(track[kept]):
             mine = np.flatnonzero(kept & (track == number))
             spans = merged(told[(told[:, 0] == number) & (told[:, 1] == number), 2:])
             kept[mine] = ~within(times[mine], spans, NEAR)
         corner, edge, t = corner[kept], edge[kept], t[kept]
-        # What touches at an end of the transition may take its time to leave.
-        for end in (0.0, 1.0):
-            if (self.start, self.end)[int(end)] == end:
-                path = np.column_stack([(t + end) / 2, np.full(len(t), end)])
-                leaving = lies_on(moving, corner, edge, path).all(axis=1)
-                corner, edge, t = corner[~leaving], edge[~leaving], t[~leaving]
+        # What touches when it begins or ends may take its time to leave.
+        for end, moment in enumerate((self.start, self.end)):
+            path = np.column_stack([(t + end) / 2, np.full(len(t), float(end))])
+            leaving = self.lives[moving.track[moving.ring[corner]], end] == moment
+            leaving &= lies_on(moving, corner, edge, path).all(axis=1)
+            corner, edge, t = corner[~leaving], edge[~leaving], t[~leaving]
         rows = [
             (moving.track[moving.ring[k]], self._global(moment), *place)
             for k, e, moment in zip(corner.tolist(), edge.tolist(), t.tolist(), strict=True)

@@ -6,15 +6,17 @@ the sum of squared ways is least:  A→b  B→x  C→c  D→a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import Point, Polygon
 
+from geotween.motion.borders import tied_rings
 from geotween.motion.divide import Division
+from geotween.motion.holes import plan_holes
 from geotween.motion.rings import MatchedPiece, Rings, Vertices, rings_of
 from geotween.motion.seams import seam_edges
 from geotween.motion.tracks import SEAM_AT_ORIGIN, SEAM_AT_TARGET
@@ -27,8 +29,12 @@ Technique = Callable[[Vertices, Vertices], tuple[NDArray[np.float64], NDArray[np
 # Sums of squared ways closer than this, relative to the largest possible, are ties.
 TIE = 1e-12
 
-# How near to the innermost point of a ring is near enough, as a share of its extent.
-INNERMOST = 1e-3
+# The numbers of two rings that belong together; of one that has no partner, None and the point (2,)
+# where it comes from or goes to.
+_RingPair = tuple[int | None, int | None, Vertices | None]
+
+# Matched vertices (2, n, 2) and seam flags (n,).
+_MatchedRing = tuple[NDArray[np.float64], NDArray[np.uint8]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,18 +67,20 @@ class Matching:
 
 
 def match(division: Division, technique: str = "rotation") -> Matching:
-    """Match the rings of each pair of pieces: outer with outer, holes by overlap.
+    """Match the rings of each pair of pieces: outer with outer, holes as ``plan_holes`` has them.
 
-    A hole without a partner opens from, or closes to, a point inside it.
+    A hole without a partner opens from, or closes to, a point within the other piece. By
+    trajectory, what two pieces share at both ends is matched once for both of them.
     """
     align = TECHNIQUES[technique]
     origin = _Side.of(division.origin_pieces, division.indices[:, 0], SEAM_AT_ORIGIN)
     target = _Side.of(division.target_pieces, division.indices[:, 1], SEAM_AT_TARGET)
+    paired = [_ring_pairs(origin, target, pair) for pair in range(len(division.indices))]
+    tied = _tied(origin, target, chain.from_iterable(paired)) if align is trajectory else {}
     pieces = []
-    for pair in range(len(division.indices)):
+    for of_piece in paired:
         parts = [
-            _match_rings(origin, target, pair, one, other, align)
-            for one, other in _ring_pairs(origin, target, pair)
+            tied.get(rings[:2]) or _match_rings(origin, target, rings, align) for rings in of_piece
         ]
         lengths = [flags.size for _, flags in parts]
         pieces.append(
@@ -144,54 +152,55 @@ def _best_turn(one: Vertices, other: Vertices) -> int:
     return int(ties[np.argmin(np.minimum(ties, len(one) - ties))])
 
 
-def _ring_pairs(origin: _Side, target: _Side, pair: int) -> list[tuple[int | None, int | None]]:
-    """Numbers of rings that belong together; None for the partner of a ring that has none."""
+def _ring_pairs(origin: _Side, target: _Side, pair: int) -> list[_RingPair]:
+    """Rings that belong together, and the points where those that have no partner come and go."""
     here, there = list(origin.rings_of(pair)), list(target.rings_of(pair))
-    pairs: list[tuple[int | None, int | None]] = []
-    if here and there:
-        pairs.append((here.pop(0), there.pop(0)))
-    if here and there:
-        holes = np.array([Polygon(origin.rings[ring]) for ring in here])
-        others = np.array([Polygon(target.rings[ring]) for ring in there])
-        overlap = shapely.area(shapely.intersection(holes[:, None], others[None, :]))
-        free_here, free_there = dict(enumerate(here)), dict(enumerate(there))
-        for best in np.argsort(-overlap, axis=None, kind="stable"):
-            i, j = (int(k) for k in np.unravel_index(best, overlap.shape))
-            if overlap[i, j] > 0 and i in free_here and j in free_there:
-                pairs.append((free_here.pop(i), free_there.pop(j)))
-        here, there = list(free_here.values()), list(free_there.values())
-    return pairs + [(ring, None) for ring in here] + [(None, ring) for ring in there]
+    piece, partner = origin.pieces[pair], target.pieces[pair]
+    if not here or not there:
+        point = shapely.get_coordinates(partner if here else piece)[0]
+        return [(ring, None, point) for ring in here] + [(None, ring, point) for ring in there]
+    outer = (here[0], there[0], None)
+    if len(here) == len(there) == 1:
+        return [outer]
+    holes = plan_holes(piece, partner)
+    return [
+        outer,
+        *((here[i + 1], there[j + 1], None) for i, j in holes.pairs),
+        *((here[i + 1], None, point) for i, point in holes.closing.items()),
+        *((None, there[j + 1], point) for j, point in holes.opening.items()),
+    ]
+
+
+def _tied(
+    origin: _Side, target: _Side, paired: Iterable[_RingPair]
+) -> dict[tuple[int | None, int | None], _MatchedRing]:
+    """The rings that have borders with others at both ends, by their numbers, matched."""
+    both = [(one, other) for one, other, _ in paired if one is not None and other is not None]
+    found: dict[tuple[int | None, int | None], _MatchedRing] = {}
+    for k, rings in tied_rings(origin.rings, target.rings, both).items():
+        one, other = both[k]
+        flags = np.zeros(len(rings.here), dtype=np.uint8)
+        for side, ring, at in ((origin, one, rings.here), (target, other, rings.there)):
+            # An edge between two vertices at one place has no length, and is no part of a seam.
+            flags |= np.where(np.roll(at, -1) == at, 0, side.flags(ring)[at.astype(np.intp)])
+        found[one, other] = rings.vertices, flags
+    return found
 
 
 def _match_rings(
-    origin: _Side, target: _Side, pair: int, one: int | None, other: int | None, align: Technique
+    origin: _Side, target: _Side, rings: _RingPair, align: Technique
 ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
     """Matched vertices (2, n, 2) and seam flags (n,) of two rings, or of one and its point."""
+    one, other, point = rings
     if one is not None and other is not None:
         here, there = align(origin.rings[one], target.rings[other])
         vertices = [points_at(origin.rings[one], here), points_at(target.rings[other], there)]
         flags = origin.flags(one)[here.astype(np.intp)] | target.flags(other)[there.astype(np.intp)]
         return np.stack(vertices), flags
+    assert point is not None
     if one is not None:
         ring = origin.rings[one]
-        point = _vanishing_point(target.pieces[pair], ring)
         return np.stack([ring, np.broadcast_to(point, ring.shape)]), origin.flags(one)
     assert other is not None
     ring = target.rings[other]
-    point = _vanishing_point(origin.pieces[pair], ring)
     return np.stack([np.broadcast_to(point, ring.shape), ring]), target.flags(other)
-
-
-def _vanishing_point(partner: Polygon | Point, ring: Vertices) -> Vertices:
-    """Where a ring without a partner comes from or goes to: its piece's point, or inside itself.
-
-    Inside itself is its centroid, or its innermost point where the centroid lies outside.
-    """
-    inside = partner
-    if not isinstance(inside, Point):
-        area = Polygon(ring)
-        inside = area.centroid
-        if not area.contains(inside):
-            reach = np.ptp(ring, axis=0).max()
-            inside = shapely.maximum_inscribed_circle(area, tolerance=reach * INNERMOST)
-    return np.asarray(shapely.get_coordinates(inside)[0])

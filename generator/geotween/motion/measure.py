@@ -5,7 +5,7 @@ They are taken from what is drawn, and know nothing of the proof over continuous
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from typing import Any, TypeVar
 
@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from geotween.data.polygons import RELATIVE_TOLERANCE, Identity, PolygonSet, bounds_of, extent
+from geotween.motion.common import common_places, edges_of
 from geotween.motion.looks import Objects, rebuilt
-from geotween.motion.rings import Vertices, next_vertex, rings_of
 from geotween.motion.tracks import Track, frame
 
 Floats = NDArray[np.float64]
@@ -110,7 +110,9 @@ def _layer(
     covered = [_united(end.polygons) for end in ends]
     common = shapely.intersection(*covered)
     hull = shapely.convex_hull(shapely.union_all(covered))
-    places: Any = shapely.points(_common_places(*ends, RELATIVE_TOLERANCE * size))
+    places: Any = shapely.points(
+        common_places(ends[0].polygons, ends[1].polygons, RELATIVE_TOLERANCE * size)[0]
+    )
     moved = 0.0
     rows = []
     for t in _middle_first(times):
@@ -162,9 +164,14 @@ def _is_invalid(polygons: Objects, overlap: float) -> bool:
 
 
 def _inexact(tracks: Sequence[Track], ends: tuple[PolygonSet, PolygonSet], t: int) -> float:
-    """By how much the tracks at an end miss or exceed the features that they belong to there."""
-    features: dict[Identity, list[Polygon]] = _grouped(ends[t].identities, ends[t].polygons)
-    pieces = _grouped([track.ends[t] for track in tracks], tracks)
+    """By how much the tracks at an end miss or exceed the features that they belong to there.
+
+    Features without a key are told apart by their class only: nothing else of theirs is seen.
+    """
+    features: dict[object, list[Polygon]] = _grouped(
+        map(_seen, ends[t].identities), ends[t].polygons
+    )
+    pieces = _grouped([_seen(track.ends[t]) for track in tracks], tracks)
     wrong = whole = 0.0
     for identity in {**features, **pieces}:
         feature = _united(_objects(features.get(identity, [])))
@@ -174,7 +181,11 @@ def _inexact(tracks: Sequence[Track], ends: tuple[PolygonSet, PolygonSet], t: in
     return _share(wrong, whole)
 
 
-def _grouped(names: Sequence[Any], items: Sequence[Item] | Objects) -> dict[Any, list[Item]]:
+def _seen(identity: Identity) -> object:
+    return identity.key if identity.keyed else ("class", identity.class_)
+
+
+def _grouped(names: Iterable[Any], items: Sequence[Item] | Objects) -> dict[Any, list[Item]]:
     found: dict[Any, list[Item]] = {}
     for name, item in zip(names, items, strict=True):
         found.setdefault(name, []).append(item)
@@ -198,45 +209,39 @@ def _farther(places: Objects, polygons: Objects, known: float) -> float:
     far = places[~shapely.dwithin(drawn, places, known)]
     if not len(far):
         return known
-    tree = shapely.STRtree(_edges_of(polygons))
+    tree = shapely.STRtree(edges_of(polygons)[0])
     _, found = tree.query_nearest(far, return_distance=True, all_matches=False)
     return max(known, float(found.max()))
 
 
-def _common_places(origin: PolygonSet, target: PolygonSet, tolerance: float) -> Vertices:
-    """Vertices and middles (p, 2) of the edges of the boundary that two sets have in common.
-
-    Places nearer than the tolerance are the same. The origin's edges are cut at the target's
-    vertices; those of which both ends and the middle lie on the target's boundary are common.
-    """
-    if not len(origin) or not len(target):
-        return np.empty((0, 2))
-    edges, others = _edges_of(origin.polygons), _edges_of(target.polygons)
-    corners: Any = shapely.points(shapely.get_coordinates(target.polygons))
-    corner, edge = shapely.STRtree(edges).query(corners, predicate="dwithin", distance=tolerance)
-    along: Any = shapely.line_locate_point(edges[edge], corners[corner], normalized=True)
-    every = np.arange(len(edges))
-    edge = np.concatenate([every, every, edge])
-    along = np.concatenate([np.zeros(len(edges)), np.ones(len(edges)), along])
-    order = np.lexsort((along, edge))
-    edge, along = edge[order], along[order]
-    inner = np.flatnonzero((edge[1:] == edge[:-1]) & (along[1:] > along[:-1]))
-    shares = np.stack([along[inner], (along[inner] + along[inner + 1]) / 2, along[inner + 1]])
-    points = shapely.line_interpolate_point(edges[edge[inner]], shares, normalized=True)
-    near = shapely.STRtree(others).query(points.ravel(), predicate="dwithin", distance=tolerance)
-    on_target = np.isin(np.arange(points.size), near[0]).reshape(points.shape)
-    kept = points[:, on_target.all(axis=0)]
-    return np.unique(shapely.get_coordinates(kept.ravel()), axis=0)
-
-
-def _edges_of(polygons: Objects) -> Objects:
-    rings = rings_of(polygons)
-    ends = rings.vertices[next_vertex(rings.offsets)]
-    return np.asarray(shapely.linestrings(np.stack([rings.vertices, ends], axis=1)))
-
-
 def _jump(tracks: Sequence[Track], times: Floats) -> float:
     """The largest Hausdorff distance between a track's vertices at two consecutive times.
+
+    Tracks that last for a part of the time, of one polygon at both ends, are looked at together.
+    """
+    whole = [track for track in tracks if track.life == (0, 1)]
+    others = [track for track in tracks if track.life != (0, 1)]
+    names = [(track.identity, track.ends) for track in others]
+    jumps = [_jump_together(of_one, times) for of_one in _grouped(names, others).values()]
+    return max([_jump_of_whole(whole, times), *jumps])
+
+
+def _jump_together(tracks: Sequence[Track], times: Floats) -> float:
+    from scipy.spatial import KDTree
+
+    jump, before = 0.0, np.empty((0, 2))
+    for t in times.tolist():
+        there = [track.at(t) for track in tracks if track.is_there(t)]
+        after = np.unique(np.concatenate([np.empty((0, 2)), *there]), axis=0)
+        if len(before) and len(after):
+            for one, other in ((before, after), (after, before)):
+                jump = max(jump, float(np.max(KDTree(other).query(one)[0])))
+        before = after
+    return jump
+
+
+def _jump_of_whole(tracks: Sequence[Track], times: Floats) -> float:
+    """Of tracks that are there throughout.
 
     No vertex is farther from the next frame's than its own way: only those whose way is longer
     than the largest distance so far are looked at, the longest ways first.

@@ -16,8 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geotween.motion.contacts import Runs, at_times, between, cross, dot, quadratic, value
+from geotween.motion.contacts import ROUNDING, Runs, at_times, between, cross, dot, quadratic, value
 from geotween.motion.moving import Flags, Floats, Moving, Numbers
+
+# Where in the time between key times directions at a point are put in order: not half-way.
+ODD = 0.4772
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,16 +53,57 @@ def passages(moving: Moving, corner: Numbers, edge: Numbers) -> Passages:
     one, other = np.concatenate(ones), np.concatenate(others)
     on_edge = np.repeat([False, True], [len(one), len(edge)])
     after, before = moving.following, moving.before
+    own = np.equal(*moving.track[moving.ring[np.stack([one, other])]])
+    back = _inward(moving, one[own], other[own])[np.stack([one, other])]
+    back[:, own] = before[np.stack([one, other])[:, own]]
     ways = np.stack(
         [
             np.concatenate([after[one], after[corner]]),
-            np.concatenate([before[one], before[corner]]),
+            np.concatenate([back[0], before[corner]]),
             np.concatenate([after[other], after[edge]]),
-            np.concatenate([before[other], edge]),
+            np.concatenate([back[1], edge]),
         ]
     )
     first, second = np.concatenate([one, corner]), np.concatenate([other, edge])
     return Passages(moving.vertex[first], moving.vertex[ways], first, second, on_edge)
+
+
+def _inward(moving: Moving, one: Numbers, other: Numbers) -> Numbers:
+    """For each corner (n,) the one from which the boundary comes that is next to the left.
+
+    That is the corner before it, but where two corners of a polygon share a moving vertex, as a
+    hole that touches the rim does: what lies between them there belongs to neither.
+    """
+    back = moving.before.copy()
+    corner = np.unique(np.concatenate([one, other]))
+    if not len(corner):
+        return back
+    places = moving.at(ODD)[moving.vertex]
+    ways = [places[to[corner]] - places[corner] for to in (moving.following, moving.before)]
+    out, in_ = (np.arctan2(way[:, 1], way[:, 0]) for way in ways)
+    at = moving.vertex[corner] * len(moving.track) + moving.track[moving.ring[corner]]
+    leaving, coming = sectors(at, out, at, in_)
+    back[corner[leaving]] = moving.before[corner[coming]]
+    return back
+
+
+def sectors(
+    leaving: Numbers, out: Floats, coming: Numbers, back: Floats
+) -> tuple[Numbers, Numbers]:
+    """What leaves and what comes in along the same sector of a polygon, at some places each.
+
+    A sector lies to the left of what leaves, up to the next one counter-clockwise that comes in.
+    ``leaving`` and ``coming`` (k,) are places; each is there as often among both. ``out`` and
+    ``back`` (k,) are the angles of what leaves, and of the way back to where what comes in is from.
+    """
+    one, other = np.lexsort((out, leaving)), np.lexsort((back, coming))
+    first = np.flatnonzero(np.append(True, leaving[one][1:] != leaving[one][:-1]))
+    counts = np.diff(np.append(first, len(one)))
+    group = np.repeat(np.arange(len(first)), counts)
+    earlier = back[other] < out[one][first][group]
+    shift = np.add.reduceat(earlier.astype(np.intp), first)
+    rank = np.arange(len(one)) - first[group]
+    return one, other[first[group] + (rank + shift[group]) % counts[group]]
 
 
 def overlapping(moving: Moving, found: Passages) -> tuple[Runs, Runs, int]:
@@ -80,6 +124,7 @@ def overlapping(moving: Moving, found: Passages) -> tuple[Runs, Runs, int]:
     track = moving.track[moving.ring]
     same = (track[found.corner] == track[found.other])[:, None]
     wrong = _pass([at_times(way, moments) for way in ways], same, moving.tolerance)
+    wrong &= np.diff(times) > ROUNDING
     deep = np.ones_like(touching)
     return Runs.of(touching & wrong, deep, times), Runs.of(touching, deep, times), moments.size
 

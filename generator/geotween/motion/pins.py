@@ -36,8 +36,8 @@ class Pins:
 
 
 @dataclass(frozen=True, eq=False)
-class _Runs:
-    """Common runs as intervals of node numbers in both rings; an end may lie beyond the count.
+class Runs:
+    """Runs as intervals of node numbers in both of two rings; an end may lie beyond the count.
 
     ``nodes`` are the counts of nodes of both rings; ``start`` and ``size`` are (r, 2), size in
     edges; ``length`` (r,) is in the data's units.
@@ -80,13 +80,13 @@ def common_runs(one: Vertices, other: Vertices) -> Pins:
     chains = _chains(following, linked)
     if not chains:
         return _no_pins()
-    runs = _Runs(
+    runs = Runs(
         nodes,
         np.array([number[chain[0]] for chain in chains]),
         np.array([len(chain) - 1 for chain in chains])[:, None].repeat(2, axis=1),
         np.array([_length(one, contacts[chain, 0]) for chain in chains]),
     )
-    kept = [chains[k] for k in _consistent(runs)]
+    kept = [chains[k] for k in consistent(runs)]
     members = np.concatenate(kept)
     ends = np.cumsum([len(chain) for chain in kept]) - 1
     common = np.ones(len(members), dtype=bool)
@@ -149,7 +149,7 @@ def _length(ring: Vertices, places: NDArray[np.float64]) -> float:
     return float(np.hypot(*np.diff(points, axis=0).T).sum())
 
 
-def _consistent(runs: _Runs) -> list[int]:
+def consistent(runs: Runs) -> list[int]:
     """The runs of the longest chain that has the same cyclic order in both rings, in order."""
     order = np.argsort(runs.start[:, 0], kind="stable")
     start, size = runs.start[order], runs.size[order]
@@ -161,7 +161,7 @@ def _consistent(runs: _Runs) -> list[int]:
     return max(chains, key=lambda chain: float(runs.length[chain].sum()))
 
 
-def _chain_through(runs: _Runs, base: int) -> list[int]:
+def _chain_through(runs: Runs, base: int) -> list[int]:
     """The longest chain through one run: a heaviest rising sequence, in n log n."""
     end_of_base = runs.start[base] + runs.size[base]
     start = (runs.start - end_of_base) % runs.nodes  # nodes after the run's end

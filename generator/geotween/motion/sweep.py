@@ -3,8 +3,8 @@
 What is proved, of tracks whose vertices move on straight lines between key times: outside of the
 intervals that are reported, and of those left undecided, every ring meets neither itself nor
 another ring of its polygon but in touching, keeps its orientation, and holes stay inside; no two
-polygons overlap. Births, deaths and contact at t = 0 and t = 1 are no violation; what begins right
-after t = 0 is.
+polygons overlap. Births, deaths and contact when a track begins or ends, at t = 0 and t = 1 as in
+between, are no violation; what begins right after that is.
 
 Up to which rounding: what is no deeper than ``TOUCH`` of the tracks' extent (or sixteen units in
 the last place of the largest coordinate, if that is more) touches; what is more than four times
@@ -140,6 +140,18 @@ def sweep(tracks: Sequence[Track], tolerance: float = TOUCH) -> Proof:
     return Proof(tuple(violations), (), found.events, found.looks + looks, limit)
 
 
+def in_other_order(proof: Proof, places: Sequence[int]) -> Proof:
+    """A proof of the same tracks in another order; ``places`` says where each of them is now."""
+
+    def renamed(found: Violation) -> Violation:
+        return replace(found, tracks=tuple(sorted(places[k] for k in found.tracks)))
+
+    undecided = tuple(
+        replace(one, tracks=tuple(sorted(places[k] for k in one.tracks))) for one in proof.undecided
+    )
+    return replace(proof, violations=tuple(map(renamed, proof.violations)), undecided=undecided)
+
+
 def _settled(
     tracks: Sequence[Track], found: Events, tolerance: float
 ) -> tuple[dict[Pair, Floats], dict[Pair, Floats], int]:
@@ -199,12 +211,15 @@ def _looked_at(
 
 
 def _is_wrong(tracks: Sequence[Track], pair: Pair, t: float, tolerance: float) -> bool:
-    """Whether more area is wrong than borders that touch within the tolerance explain."""
+    """Whether what is wrong is wider than borders that touch within the tolerance explain.
+
+    A sliver is as wide as twice its area by its length: half of that is one of its sides.
+    """
     polygons = polygons_at([tracks[k] for k in pair], t)
     if pair[0] == pair[1] and shapely.is_valid(polygons[0]):
         return False
-    explained = 4 * tolerance * shapely.length(polygons).min()
-    return bool(_wrong_at(tracks, pair, t).area > explained)
+    parts = shapely.get_parts(_wrong_at(tracks, pair, t))
+    return bool((shapely.area(parts) > 2 * tolerance * shapely.length(parts)).any())
 
 
 def _wrong_at(tracks: Sequence[Track], pair: Pair, t: float) -> BaseGeometry:
@@ -257,6 +272,7 @@ def _at_key_times(tracks: Sequence[Track]) -> Floats:
         rows += [
             (k, t, *_place_of_touch(tracks[k], t))
             for k in np.flatnonzero(~shapely.is_valid(polygons)).tolist()
+            if tracks[k].life[0] < t
         ]
     return np.array(rows).reshape(-1, 4)
 

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from geotween.data.polygons import Identity, Key
+from geotween.data.tidy.repair import made_valid
 from geotween.motion.rings import Offsets, Vertices, to_polygons
 
 SEAM_AT_ORIGIN, SEAM_AT_TARGET = 1, 2
@@ -17,14 +19,24 @@ SEAM_AT = (SEAM_AT_ORIGIN, SEAM_AT_TARGET)  # by the end of the transition, 0 or
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
-    """One moving region.
+class Film:
+    """What some tracks share: vertices that move on a straight line through several of them.
 
-    ``times`` (K,) rise from 0 to 1, after easing; ``vertices`` (K, n, 2), in the data's units,
-    move on straight lines in between. ``offsets`` (r + 1,) part them into rings, the outer one
-    first. ``seams`` (n,) has SEAM_AT_ORIGIN and SEAM_AT_TARGET set where the edge from a vertex
-    to the next is a seam at that end. ``ends`` are the identities at both ends, the same one
-    twice for a birth or a death.
+    ``lives`` (2, q) are the times between which each of them does so.
+    """
+
+    lives: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One moving region, for the whole of the transition or for a part of it.
+
+    ``times`` (K,) rise, after easing, from 0 or more to 1 or less; ``vertices`` (K, n, 2), in the
+    data's units, move on straight lines in between. ``offsets`` (r + 1,) part them into rings, the
+    outer one first. ``seams`` (n,) has SEAM_AT_ORIGIN and SEAM_AT_TARGET set where the edge from a
+    vertex to the next is a seam at that end. ``ends`` are the identities at both ends, the same one
+    twice for a birth or a death. ``nodes`` (n,) are the numbers of the vertices in a ``film``.
     """
 
     identity: Identity
@@ -34,6 +46,8 @@ class Track:
     vertices: NDArray[np.float64]
     offsets: Offsets
     seams: NDArray[np.uint8]
+    film: Film | None = None
+    nodes: NDArray[np.int32] | None = None
 
     @property
     def key(self) -> Key:
@@ -43,13 +57,24 @@ class Track:
     def class_(self) -> str | None:
         return self.identity.class_
 
+    @property
+    def life(self) -> tuple[float, float]:
+        """Since when it is there, and until when."""
+        return float(self.times[0]), float(self.times[-1])
+
+    def is_there(self, t: float) -> bool:
+        """Whether it is drawn at t: where it gives way to others, they are."""
+        start, end = self.life
+        return start <= t < end or t == end == 1
+
     def at(self, t: float) -> Vertices:
-        """The vertices (n, 2) at t in [0, 1]; exact at key times."""
+        """The vertices (n, 2) at t, a time at which it is there; exact at key times."""
         after = int(np.clip(np.searchsorted(self.times, t), 1, len(self.times) - 1))
         start, end = self.times[after - 1 : after + 1]
-        share = (t - start) / (end - start)
-        moved = self.vertices[after - 1] * (1 - share) + self.vertices[after] * share
-        return np.asarray(moved)
+        if t == end:
+            return np.asarray(self.vertices[after])
+        one, other = self.vertices[after - 1 : after + 1]
+        return np.asarray(one + (other - one) * ((t - start) / (end - start)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +96,7 @@ def frame(tracks: Sequence[Track], t: float) -> Frame:
     """
     if not 0 <= t <= 1:
         raise ValueError(f"t runs from 0 to 1, not {t}")
+    tracks = [track for track in tracks if track.is_there(t)]
     if not tracks:
         return Frame([], [], [])
     vertices = np.concatenate([track.at(t) for track in tracks])
@@ -79,11 +105,21 @@ def frame(tracks: Sequence[Track], t: float) -> Frame:
     owner = np.repeat(np.arange(len(tracks)), [len(track.offsets) - 1 for track in tracks])
     drawn = [
         (polygon, track)
-        for polygon, track in zip(to_polygons(vertices, offsets, owner), tracks, strict=True)
-        if polygon is not None
+        for whole, track in zip(to_polygons(vertices, offsets, owner), tracks, strict=True)
+        for polygon in _parts(whole, track, t)
     ]
     return Frame(
         [polygon for polygon, _ in drawn],
         [track.key for _, track in drawn],
         [track.layer for _, track in drawn],
     )
+
+
+def _parts(polygon: Polygon | None, track: Track, t: float) -> list[Polygon]:
+    """A polygon, or none; at a moment when parts of a film touch, those that have area."""
+    if polygon is None:
+        return []
+    if track.film is None or t not in track.life or polygon.is_valid:
+        return [polygon]
+    parts = shapely.orient_polygons(shapely.get_parts(made_valid(polygon)), exterior_cw=False)
+    return [part for part in parts if part.area > 0]

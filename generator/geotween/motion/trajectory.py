@@ -23,6 +23,7 @@ from geotween.motion.arcs import (
     outer_places,
     points_along,
     size_of,
+    stretch,
 )
 from geotween.motion.pins import common_runs
 from geotween.motion.rings import Vertices
@@ -94,17 +95,11 @@ def _ends(places: Places, k: int, count: int) -> tuple[float, float]:
     return start, end if end > start else end + count
 
 
-def _arc(ring: Points, start: float, end: float) -> tuple[Places, Points]:
-    """The places of an arc's ends and of the vertices in between, and the points there."""
-    places = np.concatenate([[start], np.arange(np.floor(start) + 1, np.ceil(end)), [end]])
-    return places, points_along(ring, places)
-
-
 def _between(
     one: Points, other: Points, first: tuple[float, float], second: tuple[float, float]
 ) -> tuple[Places, Places]:
     """Matched places of two arcs that have their ends in common, without the last ones."""
-    (here, a), (there, b) = _arc(one, *first), _arc(other, *second)
+    (here, a), (there, b) = stretch(one, *first), stretch(other, *second)
     if len(a) == len(b) == 2:
         return here[:1], there[:1]
     found = _best(a, b, [(b, work) for work in ATTEMPTS])
@@ -137,6 +132,32 @@ def _all_round(one: Points, other: Points) -> tuple[Places, Places]:
     return outer_places(here, found[0])[:-1], outer_places(there, found[1])[:-1]
 
 
+def matched_curves(a: Points, b: Points) -> tuple[Places, Places]:
+    """Matched places of two open curves whose ends match, from end to end.
+
+    Curves that lie apart are matched as if they lay on each other, as rings are. The points that
+    go to a single edge go there in proportion, unless frames cross themselves then.
+    """
+    if len(b) == 2:
+        here, there = np.arange(float(len(a))), _shares(a)
+        if len(a) == 2 or not _crossed(a, points_along(b, there)):
+            return here, there
+    elif len(a) == 2:
+        there, here = matched_curves(b, a)
+        return here, there
+    shift = (b[0] - a[0] + b[-1] - a[-1]) / 2
+    laid = [(b - shift, work) for work in ATTEMPTS[:SHIFTED]] if shift else []
+    return _best(a, b, laid + [(b, work) for work in ATTEMPTS])
+
+
+def _shares(curve: Points) -> Places:
+    """How far along an open curve its points are, from 0 to 1; without length, in equal steps."""
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(curve)))])
+    if not along[-1]:
+        return np.linspace(0, 1, len(curve))
+    return np.asarray(along / along[-1])
+
+
 def _length(ring: Points) -> float:
     return float(np.abs(np.roll(ring, -1) - ring).sum())
 
@@ -149,7 +170,7 @@ def _middle(ring: Points) -> complex:
 
 
 def _opened(ring: Points, start: float) -> tuple[Places, Points]:
-    return _arc(ring, start % len(ring), start % len(ring) + len(ring))
+    return stretch(ring, start % len(ring), start % len(ring) + len(ring))
 
 
 def _cut(one: Points, other: Points) -> tuple[float, float]:

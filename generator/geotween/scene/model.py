@@ -168,16 +168,33 @@ class Map(_Part):
         return self
 
 
+class MotionRule(_Part):
+    """The motion of a layer, a class or a key that is to differ from the rest."""
+
+    method: Literal["auto", "morph", "front"]
+
+
 class Motion(_Part):
     """How polygons become those of the next step; a name left out follows from the method."""
 
-    method: Literal["auto", "paper"] = "auto"
+    method: Literal["auto", "morph", "front", "paper"] = Field(
+        "auto", description="auto: what changes in place is swept (front), what travels morphs"
+    )
+    by_layer: dict[Text, MotionRule] = Field(default={}, alias="layer")
+    by_class: dict[Text, MotionRule] = Field(default={}, alias="class")
+    by_key: dict[Text, MotionRule] = Field(default={}, alias="key")
+    annexation: Literal["sweep", "in-place"] | None = Field(
+        None, description="how a front takes over a neighbour as a whole"
+    )
     correspondence: Literal["intersects", "overlap", "within", "key", "auto"] | None = None
     radius: Positive | None = Field(
         None, description="of correspondence: within, in units of the map"
     )
     division: Literal["voronoi"] | None = None
     matching: Literal["rotation", "trajectory"] | None = None
+    path: Literal["straight", "rigid", "intrinsic"] | None = Field(
+        None, description="the way of matched vertices: rigid turns shapes, intrinsic unrolls them"
+    )
     easing: Easing = "ease-in-out"
     ghost: Literal["none", "origin"] = Field(
         "none", description="origin keeps the origin's outline during the transition"

@@ -19,6 +19,7 @@ from geotween.data.problems import Problem
 from geotween.motion.correspond import Correspondence
 from geotween.motion.divide.voronoi import Mend
 from geotween.motion.divide.voronoi import voronoi as by_voronoi
+from geotween.motion.innermost import innermost
 
 NOBODY = -1  # the index of a partner that does not exist: a birth's origin, a death's target
 
@@ -51,10 +52,12 @@ class Division:
     problems: tuple[Problem, ...]
 
 
-def divide(correspondence: Correspondence, technique: str = "voronoi") -> Division:
+def divide(
+    correspondence: Correspondence, technique: str = "voronoi", births: str = "innermost"
+) -> Division:
     """Cut every polygon that has several correspondents; pair the pieces.
 
-    Births come after the pairs, deaths after the births.
+    Births come after the pairs, deaths after the births. ``births`` is a name of ``BIRTHS``.
     """
     origin, target = correspondence.origin, correspondence.target
     of_origin, of_target = correspondence.of_origin(), correspondence.of_target()
@@ -70,13 +73,12 @@ def divide(correspondence: Correspondence, technique: str = "voronoi") -> Divisi
 
     born = np.flatnonzero([not len(partners) for partners in of_target])
     dead = np.flatnonzero([not len(partners) for partners in of_origin])
+    point_of = BIRTHS[births]
     return Division(
         origin,
         target,
-        np.concatenate(
-            [origin_pieces, shapely.centroid(target.polygons[born]), origin.polygons[dead]]
-        ),
-        np.concatenate([paired, target.polygons[born], shapely.centroid(origin.polygons[dead])]),
+        np.concatenate([origin_pieces, point_of(target.polygons[born]), origin.polygons[dead]]),
+        np.concatenate([paired, target.polygons[born], point_of(origin.polygons[dead])]),
         np.concatenate(
             [
                 pairs,
@@ -86,6 +88,25 @@ def divide(correspondence: Correspondence, technique: str = "voronoi") -> Divisi
         ),
         tuple(problems + more),
     )
+
+
+def _innermost(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
+    return np.asarray(shapely.points(innermost(polygons)), dtype=object)
+
+
+def _centroids(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
+    """The centroids, or the innermost points where those lie outside."""
+    points = np.asarray(shapely.centroid(polygons), dtype=object)
+    outside = ~np.asarray(shapely.contains(polygons, points), dtype=bool)
+    points[outside] = _innermost(polygons[outside])
+    return points
+
+
+# Where polygons without a partner come from and go to, (n,) for (n,).
+BIRTHS: Mapping[str, Callable[[NDArray[np.object_]], NDArray[np.object_]]] = {
+    "innermost": _innermost,
+    "centroid": _centroids,
+}
 
 
 def _cut_all(
