@@ -6,13 +6,13 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test lint prove bench schema golden clean
+.PHONY: demo test lint prove bench schema golden figures clean
 
 demo: .venv/.package
 	$(BIN)/geotween build scenes/*.yaml -o public
 
 test: .venv/.tests .venv/.browser lint
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto
 
 lint: .venv/.tests
 	$(BIN)/ruff check .
@@ -20,7 +20,7 @@ lint: .venv/.tests
 	$(BIN)/mypy
 
 prove: .venv/.tests
-	HYPOTHESIS_PROFILE=prove $(BIN)/pytest tests --ignore tests/browser
+	HYPOTHESIS_PROFILE=prove $(BIN)/pytest -n auto tests --ignore tests/browser
 
 bench: .venv/.package benchmarks/node_modules
 	$(BIN)/python benchmarks/pair.py
@@ -31,6 +31,9 @@ schema: .venv/.package
 
 golden: .venv/.tests
 	$(BIN)/pytest tests/test_golden.py --update-golden
+
+figures: .venv/.tests
+	$(BIN)/python -m docs.draw
 
 .venv/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from shapely import affinity
 from shapely.geometry import Polygon, box
 
@@ -17,6 +19,9 @@ from geotween.motion.morph import Morph, plan
 from geotween.motion.techniques import resolve
 from tests.motion.made import FAMILIES, KEYED, made
 from tests.motion.shapes import star
+
+PROVING = settings.get_current_profile_name() == "prove"
+METHODS = ["auto", "morph"]
 
 DISC = shapely.Point(0, 0).buffer(1)
 
@@ -122,14 +127,11 @@ def test_only_the_group_that_crosses_takes_another_way() -> None:
 # Everything together, on seeded transitions of all kinds.
 
 
-@pytest.mark.parametrize("method", ["auto", "morph"])
-@pytest.mark.parametrize("family", FAMILIES)
-def test_what_is_called_valid_is_so_in_frames(family: str, method: str) -> None:
-    origin, target = made(family, 4)
-    technique = resolve(method, "key" if family in KEYED else None)
-    m = plan(origin, target, technique)
+def assert_valid_and_so_in_frames(family: str, seed: int, method: str, frames: int) -> None:
+    origin, target = made(family, seed)
+    m = plan(origin, target, resolve(method, "key" if family in KEYED else None))
     assert m.certificate.valid, m.certificate.problems
-    found = measure(m.tracks, origin, target, 51)
+    found = measure(m.tracks, origin, target, frames)
     assert found.invalid_time == 0
     assert found.overlap < 1e-9
     assert found.inexact_ends < 1e-9
@@ -137,3 +139,17 @@ def test_what_is_called_valid_is_so_in_frames(family: str, method: str) -> None:
     if set(ways(m)) == {"front"}:
         assert found.lost < 1e-9
         assert found.area_largest < 0.01
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("family", FAMILIES)
+def test_what_is_called_valid_is_so_in_frames_of_one_of_each_family(
+    family: str, method: str
+) -> None:
+    assert_valid_and_so_in_frames(family, 4, method, 51)
+
+
+@pytest.mark.skipif(not PROVING, reason="takes long; make prove has it")
+@given(st.sampled_from(list(FAMILIES)), st.integers(0, 2**32), st.sampled_from(METHODS))
+def test_what_is_called_valid_is_so_in_frames(family: str, seed: int, method: str) -> None:
+    assert_valid_and_so_in_frames(family, seed, method, 201)

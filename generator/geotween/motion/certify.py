@@ -95,7 +95,7 @@ def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Cer
         met += _crossings(layer)
     if max(moved) > 0:
         message = "boundary that both ends have in common moves on the way"
-        hint = "matching: trajectory pins it"
+        hint = "matching: trajectory pins it, and method: front never moves it"
         share = max(moved)
         met.append(Problem("moved", "warning", message, (), "", share, "of its places", hint))
     return Certificate(
@@ -179,7 +179,7 @@ def _crossings(layer: LayerMotion) -> list[Problem]:
         covered = shapely.area(layer.division.origin.polygons).sum()
         covered = max(covered, shapely.area(layer.division.target.polygons).sum())
         share = worst.area / covered if covered else 0.0
-        hint = "frames there are not to be trusted; try matching: trajectory, or rotation"
+        hint = "name no matching, or take method: front; motion: {key: …} does so for some only"
         found.append(Problem(kind, "warning", message, (), "", share, "of all area", hint))
     found += [
         Problem("undecided", "warning", f"not proved: {one.reason}")

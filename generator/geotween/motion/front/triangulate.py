@@ -47,6 +47,7 @@ def triangulated(faces: Shapes, points: Floats, inside: Ints) -> tuple[Ints, Int
     flat = np.flatnonzero(turn == 0)
     if len(flat):
         _flip(points, triangles, face, flat)
+    triangles, face = _with_fans(faces, points, inside, triangles, face)
     return triangles, face, _sound(faces, points, triangles, face)
 
 
@@ -111,6 +112,30 @@ def _flip(points: Floats, triangles: Ints, face: Ints, flat: Ints) -> None:
         flat = np.array(left, dtype=np.intp)
         if not len(flat):
             return
+
+
+def _with_fans(
+    faces: Shapes, points: Floats, inside: Ints, triangles: Ints, face: Ints
+) -> tuple[Ints, Ints]:
+    """Triangles in which faces that a point inside sees all of are fans around it.
+
+    What begins there grows without changing its shape.
+    """
+    kept = np.ones(len(triangles), dtype=bool)
+    parts, owners = [], []
+    alone = np.bincount(inside[:, 0], minlength=len(faces)) == 1
+    for number, point in inside.tolist():
+        if not alone[number] or len(faces[number].interiors):
+            continue
+        ring = numbers_of(points, shapely.get_coordinates(faces[number].exterior)[:-1])
+        fan = np.column_stack([np.full_like(ring, point), ring, np.roll(ring, -1)])
+        if (turns(points, fan) > 0).all():
+            kept[face == number] = False
+            parts.append(fan)
+            owners.append(np.full(len(fan), number))
+    owner = np.concatenate([face[kept], *owners]).astype(np.intp)
+    order = np.argsort(owner, kind="stable")
+    return np.concatenate([triangles[kept], *parts]).astype(np.intp)[order], owner[order]
 
 
 def _sound(faces: Shapes, points: Floats, triangles: Ints, face: Ints) -> Flags:
