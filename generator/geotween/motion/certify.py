@@ -16,6 +16,7 @@ from geotween.data.problems import Problem
 from geotween.motion.areas import area_over_time
 from geotween.motion.common import moved_shares
 from geotween.motion.correspond import Correspondence
+from geotween.motion.covered import bared
 from geotween.motion.divide import Division
 from geotween.motion.sweep import Proof, Violation, sweep
 from geotween.motion.techniques import FRONT
@@ -25,6 +26,9 @@ Objects = NDArray[np.object_]
 
 # Pieces may miss or exceed their polygon by this share of its area: rounding, no more.
 PARTITION_TOLERANCE = 1e-9
+
+# An edge that gets into an area by less than this share of the extent lays nothing bare.
+BARE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +78,10 @@ def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Cer
     ``partition error`` is the largest area, relative to its polygon, by which the pieces of one
     polygon miss or exceed it; ``pieces`` and ``mends`` are counts; ``crossing`` is the share of
     time in which some polygon crosses itself or another one; ``common boundary moved`` the
-    share of it that does not rest. ``area off linear`` and ``area overshoot`` are the most by
-    which a layer's area leaves its straight way, and goes beyond both its ends, as shares of the
-    larger end: computed from the motion itself, for all t.
+    share of it that does not rest; ``bared`` the share of what a feature covers at both ends that
+    is bare on the way, where 0 is proved and more is measured at a few moments. ``area off linear``
+    and ``area overshoot`` are the most by which a layer's area leaves its straight way, and goes
+    beyond both its ends, as shares of the larger end: computed from the motion itself, for all t.
     """
     partition, exact, met = _partition(layers)
     moved = [_boundary_moved(layer) for layer in layers]
@@ -87,6 +92,7 @@ def certify(layers: Sequence[LayerMotion], problems: tuple[Problem, ...]) -> Cer
         "mends": float(sum(len(layer.division.problems) for layer in layers)),
         "crossing": _time_of(v for layer in layers for v in layer.proof.violations),
         "common boundary moved": max(moved),
+        "bared": max(_bared(layer) for layer in layers),
         "area off linear": max(off),
         "area overshoot": max(overshoot),
     }
@@ -145,6 +151,16 @@ def _boundary_moved(layer: LayerMotion) -> float:
     every = np.concatenate([track.vertices.reshape(-1, 2) for track in tracks])
     reach = float(np.ptp(every, axis=0).max(initial=0)) if len(every) else 0.0
     return float(moved_shares(tracks, RELATIVE_TOLERANCE * reach).max(initial=0))
+
+
+def _bared(layer: LayerMotion) -> float:
+    """The most that travelling pieces lay bare; a front keeps covered what is common."""
+    tracks = [t for t, way in zip(layer.tracks, layer.ways, strict=True) if way != FRONT]
+    if not tracks:
+        return 0.0
+    ends = [end.in_layer(layer.layer) for end in (layer.division.origin, layer.division.target)]
+    reach = float(np.ptp(np.concatenate([t.vertices[0] for t in tracks]), axis=0).max(initial=0))
+    return bared(tracks, ends[0], ends[1], BARE * reach)
 
 
 def _area(layer: LayerMotion) -> tuple[float, float]:
