@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
+import shapely
 
 from geotween.data.polygons import PolygonSet
 from geotween.data.problems import Problem
@@ -11,6 +15,7 @@ from geotween.motion.front.field import arrival
 from geotween.motion.front.film import tracks_of
 from geotween.motion.front.flaws import flaws
 from geotween.motion.front.levels import Arrivals, levels
+from geotween.motion.rings import to_polygons
 from geotween.motion.sweep import Proof, sweep
 from geotween.motion.tracks import Track
 
@@ -19,7 +24,8 @@ from geotween.motion.tracks import Track
 class Fronts:
     """The tracks of a front motion, the arrivals that they were made from, and what is proved.
 
-    Where the arrivals keep their contract (levels.py) nothing overlaps by construction.
+    Where the arrivals keep their contract (levels.py), and the tracks' polygons are simple, nothing
+    overlaps by construction; else the tracks are swept.
     """
 
     tracks: tuple[Track, ...]
@@ -43,8 +49,25 @@ def front(
     arrivals = levels(change, arrival(change), resolution)
     tracks = tracks_of(arrivals, change.things, layer)
     found = flaws(arrivals, change)
-    if not found:
+    if not found and _simple(tracks):
         return Fronts(tracks, arrivals, (), Proof((), (), 0, 0, 0.0))
     hint = "look for slivers in the data"
     problems = tuple(Problem("front", "error", flaw, hint=hint) for flaw in found)
     return Fronts(tracks, arrivals, problems, sweep(tracks))
+
+
+def _simple(tracks: Sequence[Track]) -> bool:
+    """Whether all polygons are valid in the middle between two of their key times.
+
+    Where arrivals have no flaw their structure is the same all the time in between.
+    """
+    for k in range(max((len(track.times) - 1 for track in tracks), default=0)):
+        mine = [track for track in tracks if k + 1 < len(track.times)]
+        middles = [(track.vertices[k] + track.vertices[k + 1]) / 2 for track in mine]
+        counts = [np.diff(track.offsets) for track in mine]
+        owner = np.repeat(np.arange(len(mine)), [len(count) for count in counts])
+        offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.intp)
+        polygons = to_polygons(np.concatenate(middles), offsets, owner)
+        if not all(p is None or shapely.is_valid(p) for p in polygons):
+            return False
+    return True
