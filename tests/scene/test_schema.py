@@ -13,6 +13,7 @@ from jsonschema import Draft202012Validator
 
 from geotween.cli import main
 from geotween.motion import correspond, divide, match, paths, techniques
+from geotween.motion.front.changes import ANNEXATIONS
 from geotween.scene.model import Motion
 from geotween.scene.read import scene_schema
 
@@ -99,7 +100,7 @@ def test_schema_beside_the_scenes_is_the_one_that_is_printed() -> None:
         ("division", divide.TECHNIQUES),
         ("matching", match.TECHNIQUES),
         ("path", paths.TECHNIQUES),
-        ("annexation", techniques.ANNEXATIONS),
+        ("annexation", ANNEXATIONS),
     ],
 )
 def test_scene_may_name_just_the_techniques_that_there_are(field: str, registry: Any) -> None:

@@ -27,9 +27,6 @@ Objects = NDArray[np.object_]
 # Pieces may miss or exceed their polygon by this share of its area: rounding, no more.
 PARTITION_TOLERANCE = 1e-9
 
-# An edge that gets into an area by less than this share of the extent lays nothing bare.
-BARE = 1e-9
-
 
 @dataclass(frozen=True, eq=False)
 class LayerMotion:
@@ -160,7 +157,7 @@ def _bared(layer: LayerMotion) -> float:
         return 0.0
     ends = [end.in_layer(layer.layer) for end in (layer.division.origin, layer.division.target)]
     reach = float(np.ptp(np.concatenate([t.vertices[0] for t in tracks]), axis=0).max(initial=0))
-    return bared(tracks, ends[0], ends[1], BARE * reach)
+    return bared(tracks, ends[0], ends[1], RELATIVE_TOLERANCE * reach)
 
 
 def _area(layer: LayerMotion) -> tuple[float, float]:

@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geotween.motion.looks import Objects
-from geotween.motion.rings import Vertices, next_vertex, rings_of, to_polygons
+from geotween.motion.looks import Objects, polygons_with
+from geotween.motion.rings import Vertices, next_vertex, rings_of
 from geotween.motion.tracks import Track
 
 Floats = NDArray[np.float64]
@@ -25,8 +25,8 @@ def moved_shares(tracks: Sequence[Track], tolerance: float) -> Floats:
     rest, or slide along its own line. What is nearer than ``tolerance``, in the data's units, is
     the same. For tracks that last from 0 to 1. Cost: n log n.
     """
-    ends = [_polygons(tracks, 0), _polygons(tracks, -1)]
-    owners = [np.flatnonzero(_there(polygons)) for polygons in ends]
+    ends = [polygons_with(tracks, [track.vertices[end] for track in tracks]) for end in (0, -1)]
+    owners = [np.flatnonzero(~shapely.is_empty(polygons)) for polygons in ends]
     here, there = (polygons[owner] for polygons, owner in zip(ends, owners, strict=True))
     places, owner = common_places(here, there, tolerance, (owners[0], owners[1]))
     if not len(places):
@@ -90,23 +90,6 @@ def edges_of(polygons: Objects) -> tuple[Objects, Numbers]:
     ends = rings.vertices[next_vertex(rings.offsets)]
     lines: Any = shapely.linestrings(np.stack([rings.vertices, ends], axis=1))
     return np.asarray(lines), np.repeat(rings.polygon_of, np.diff(rings.offsets))
-
-
-def _polygons(tracks: Sequence[Track], end: int) -> Objects:
-    counts = [np.diff(track.offsets) for track in tracks]
-    owner = np.repeat(np.arange(len(tracks)), [len(count) for count in counts])
-    offsets = np.concatenate([[0], *map(np.cumsum, [np.concatenate([*counts, []])])]).astype(
-        np.intp
-    )
-    vertices = np.concatenate([*(track.vertices[end] for track in tracks), np.empty((0, 2))])
-    found = np.full(len(tracks), None, dtype=object)
-    drawn = to_polygons(vertices, offsets, owner)
-    found[: len(drawn)] = drawn
-    return found
-
-
-def _there(polygons: Objects) -> NDArray[np.bool_]:
-    return np.array([polygon is not None for polygon in polygons], dtype=bool)
 
 
 def _resting(

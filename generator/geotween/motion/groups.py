@@ -39,16 +39,11 @@ def grouped(related: Correspondence, further: Pairs | None = None) -> Groups:
     ``further`` (k, 2) are pairs that hang together, too, in numbers that count the target's
     polygons after the origin's.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     count, others = len(related.origin), len(related.target)
-    rows, columns = related.pairs[:, 0], related.pairs[:, 1] + count
+    pairs = related.pairs + np.array([0, count])
     if further is not None:
-        rows = np.concatenate([rows, further[:, 0]])
-        columns = np.concatenate([columns, further[:, 1]])
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(count + others,) * 2)
-    numbers = connected_components(graph, directed=False)[1].astype(np.intp)
+        pairs = np.concatenate([pairs, further])
+    numbers = connected(pairs, count + others)
     return Groups(numbers[:count], numbers[count:])
 
 
@@ -60,3 +55,12 @@ def only(related: Correspondence, groups: Groups, chosen: NDArray[np.bool_]) -> 
         [(np.cumsum(of) - 1)[kept[:, k]] for k, of in ((0, origin), (1, target))]
     )
     return Correspondence(related.origin.chosen(origin), related.target.chosen(target), places)
+
+
+def connected(pairs: Pairs, count: int) -> Numbers:
+    """For each of ``count`` nodes the number of its component, for pairs (k, 2) of nodes."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(pairs), dtype=bool), tuple(pairs.T)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)

@@ -24,15 +24,22 @@ def polygons_at(tracks: Sequence[Track], t: float) -> Objects:
     """The polygon of each track at t, valid or not; an empty one where nothing is left, or yet."""
     drawn = np.full(len(tracks), shapely.Polygon(), dtype=object)
     there = np.flatnonzero([track.is_there(t) for track in tracks])
-    if not len(there):
-        return drawn
     seen = [tracks[k] for k in there.tolist()]
-    counts = [np.diff(track.offsets) for track in seen]
-    owner = np.repeat(np.arange(len(seen)), [len(count) for count in counts])
+    drawn[there] = polygons_with(seen, [track.at(t) for track in seen])
+    return drawn
+
+
+def polygons_with(tracks: Sequence[Track], places: Sequence[Vertices]) -> Objects:
+    """The polygon of each track with its vertices at some places; empty where nothing is left."""
+    drawn = np.full(len(tracks), shapely.Polygon(), dtype=object)
+    if not len(tracks):
+        return drawn
+    counts = [np.diff(track.offsets) for track in tracks]
+    owner = np.repeat(np.arange(len(tracks)), [len(count) for count in counts])
     offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.intp)
-    found = to_polygons(np.concatenate([track.at(t) for track in seen]), offsets, owner)
+    found = to_polygons(np.concatenate(places), offsets, owner)
     left = np.flatnonzero([polygon is not None for polygon in found])
-    drawn[there[left]] = found[left]
+    drawn[left] = found[left]
     return drawn
 
 

@@ -19,6 +19,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geotween.data.polygons import RELATIVE_TOLERANCE
+from geotween.motion.groups import connected
 from geotween.motion.intrinsic import intrinsic
 from geotween.motion.rigid import Ends, Floats, best_turn
 from geotween.motion.rings import MatchedPiece, Offsets, next_vertex
@@ -93,9 +94,6 @@ def touching(pieces: Sequence[MatchedPiece], tolerance: float) -> Numbers:
     ``tolerance`` is in the data's units. A piece that is a point at an end has no border there.
     Cost: n log n for n vertices.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     if not pieces:
         return np.empty(0, dtype=np.intp)
     pairs = [np.empty((2, 0), dtype=np.intp)]
@@ -103,9 +101,7 @@ def touching(pieces: Sequence[MatchedPiece], tolerance: float) -> Numbers:
         rings, owner = _borders(pieces, end)
         one, other = shapely.STRtree(rings).query(rings, "dwithin", distance=tolerance)
         pairs.append(np.stack([owner[one], owner[other]]))
-    rows, columns = np.concatenate(pairs, axis=1)
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(len(pieces),) * 2)
-    return np.asarray(connected_components(graph, directed=False)[1].astype(np.intp))
+    return connected(np.concatenate(pairs, axis=1).T, len(pieces))
 
 
 def _straight(group: Group, tolerance: float) -> list[Path]:

@@ -9,6 +9,7 @@ from typing import Any
 from geotween.data.polygons import Identity
 from geotween.motion import divide, match, paths
 from geotween.motion.correspond import check_technique
+from geotween.motion.front.changes import ANNEXATIONS
 
 MORPH, FRONT = "morph", "front"  # the two motions; a front matches nothing
 
@@ -57,7 +58,6 @@ METHODS: Mapping[str, Techniques] = {
     FRONT: replace(_MORPH, method=FRONT),
     "auto": replace(_MORPH, method="auto"),
 }
-ANNEXATIONS = ("sweep", "in-place")
 
 
 def resolve(

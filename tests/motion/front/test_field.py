@@ -12,7 +12,7 @@ from geotween.motion.front.borders import agreed, between
 from geotween.motion.front.changes import changes
 from geotween.motion.front.field import arrival
 from geotween.motion.front.surface import source_and_sink, surface
-from geotween.motion.front.things import connected
+from geotween.motion.groups import connected
 
 DISC, LARGER = shapely.Point(0, 0).buffer(1), shapely.Point(0, 0).buffer(2)
 LEFT_AND_RIGHT = {"a": shapely.box(0, 0, 2, 3), "b": shapely.box(2, 0, 4, 3)}

@@ -22,7 +22,8 @@ from geotween.motion.front.plane import (
     Plane,
     cut,
 )
-from geotween.motion.front.things import connected, labels_of, lasting, sums, things_of
+from geotween.motion.front.things import labels_of, lasting, sums, things_of
+from geotween.motion.groups import connected
 
 ANNEXATIONS = ("sweep", "in-place")
 

@@ -11,7 +11,7 @@ from geotween.motion.front.exact import turns
 from geotween.motion.front.knots import below
 from geotween.motion.front.meshes import TICKS
 from geotween.motion.front.plane import NOTHING, Change, Floats, Ints
-from geotween.motion.front.things import connected
+from geotween.motion.groups import connected
 
 # At how many moments areas are looked at; in between they are taken to grow evenly.
 MOMENTS = 64

@@ -13,8 +13,8 @@ from geotween.motion.front.distance import distances, waves
 from geotween.motion.front.harmonic import harmonic
 from geotween.motion.front.plane import NEUTRAL, SINK, SOURCE, Change, Floats, Ints
 from geotween.motion.front.surface import Flags, Surface, source_and_sink, surface
-from geotween.motion.front.things import connected
 from geotween.motion.front.turns import turns
+from geotween.motion.groups import connected
 
 TECHNIQUES = ("ratio", "harmonic")
 

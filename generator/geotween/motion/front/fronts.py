@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import shapely
 
 from geotween.data.polygons import PolygonSet
@@ -15,7 +14,7 @@ from geotween.motion.front.field import arrival
 from geotween.motion.front.film import tracks_of
 from geotween.motion.front.flaws import flaws
 from geotween.motion.front.levels import Arrivals, levels
-from geotween.motion.rings import to_polygons
+from geotween.motion.looks import polygons_with
 from geotween.motion.sweep import Proof, sweep
 from geotween.motion.tracks import Track
 
@@ -64,10 +63,6 @@ def _simple(tracks: Sequence[Track]) -> bool:
     for k in range(max((len(track.times) - 1 for track in tracks), default=0)):
         mine = [track for track in tracks if k + 1 < len(track.times)]
         middles = [(track.vertices[k] + track.vertices[k + 1]) / 2 for track in mine]
-        counts = [np.diff(track.offsets) for track in mine]
-        owner = np.repeat(np.arange(len(mine)), [len(count) for count in counts])
-        offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.intp)
-        polygons = to_polygons(np.concatenate(middles), offsets, owner)
-        if not all(p is None or shapely.is_valid(p) for p in polygons):
+        if not shapely.is_valid(polygons_with(mine, middles)).all():
             return False
     return True

@@ -17,7 +17,7 @@ from geotween.motion.front.outline import (
     regions_of,
 )
 from geotween.motion.front.plane import INNER, SINK, SOURCE, Change, Floats, Ints
-from geotween.motion.front.things import connected
+from geotween.motion.groups import connected
 
 # Spacings of a region: so many to its mean width, at most so many lattice points, at most so many
 # parts of its outline, and nothing finer than this share of the extent: three pixels of a thousand.

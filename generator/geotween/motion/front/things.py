@@ -14,6 +14,7 @@ import shapely
 from geotween.data.polygons import Identity, PolygonSet
 from geotween.motion.correspond import LEAST_SHARE, SHARE
 from geotween.motion.front.plane import NOTHING, Floats, Ints, Plane, Thing
+from geotween.motion.groups import connected
 
 # Of two tiles without names each is more than this part of the other: they are the same one.
 MOST = 0.5
@@ -101,15 +102,6 @@ def things_of(
     before = _identities(origin, labels.of_origin, labels.count)
     after = _identities(target, labels.of_target, labels.count)
     return tuple(Thing(before[one], after[other]) for one, other in pairs.tolist())
-
-
-def connected(pairs: Ints, count: int) -> Ints:
-    """For each of ``count`` nodes the number of its component, for pairs (k, 2) of nodes."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(pairs), dtype=bool), tuple(pairs.T)), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 
 def sums(numbers: Ints, weights: Floats, count: int) -> Floats:

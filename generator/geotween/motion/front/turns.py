@@ -7,7 +7,7 @@ import shapely
 
 from geotween.motion.front.plane import NOTHING, SINK, SOURCE, Change, Floats, Ints
 from geotween.motion.front.surface import Surface
-from geotween.motion.front.things import connected
+from geotween.motion.groups import connected
 
 # The latest that something apart starts, as a share of the transition.
 LATEST = 0.8

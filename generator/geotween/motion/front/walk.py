@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from geotween.motion.front.pieces import Nodes, Pieces
 from geotween.motion.front.plane import Floats, Ints
-from geotween.motion.front.things import connected
+from geotween.motion.groups import connected
 from geotween.motion.passages import sectors
 
 Ring = tuple[int, ...]  # the numbers of its strings
