@@ -17,6 +17,8 @@ from geotween.data.polygons import Feature, PolygonSet, polygon_set
 from geotween.motion.measure import measure
 from geotween.motion.morph import Morph, plan
 from geotween.motion.techniques import resolve
+from tests.motion.front.tilings import KINDS
+from tests.motion.front.tilings import keyed as tiling
 from tests.motion.made import FAMILIES, KEYED, made
 from tests.motion.shapes import star
 
@@ -55,6 +57,13 @@ def test_a_border_between_two_is_swept_for_both_of_them() -> None:
     assert ways(m) == {"front": 2}
     areas = [sum(p.area for p in m.frame(t).polygons) for t in np.linspace(0, 1, 9)]
     assert areas == pytest.approx([36] * 9)
+
+
+@pytest.mark.parametrize("kinds", [list(KINDS), ["swaps"]])
+def test_a_tiling_does_not_travel_whatever_its_tiles_do(kinds: list[str]) -> None:
+    for seed in range(3):
+        m = plan(*tiling(seed, 14, kinds), resolve("auto"))
+        assert set(ways(m)) == {"front"}
 
 
 def test_a_storm_travels_over_a_country_that_grows() -> None:

@@ -1,8 +1,9 @@
 """The choice between the two motions: what changes in place is swept, what travels is morphed.
 
 It is made for each cluster: groups of corresponding polygons, and what borders on them. Two areas
-are compared. Sweeping costs the area that changes hands, once. Travelling costs the way of each
-group's centroid times its width, and the area that changes where the target is laid on the origin.
+are compared. Sweeping costs the area that changes hands, once: what one group loses and another
+one of the cluster gains counts for both of them together. Travelling costs the way of each group's
+centroid times its width, and the area that changes where the target is laid on the origin.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from geotween.motion.groups import Groups, Numbers, grouped
 from geotween.motion.techniques import FRONT, MORPH, Techniques
 
 # What shares less than this part of the smaller area with itself at the other end is elsewhere, and
-# its way, however far, costs nothing: it cannot have changed in place.
+# its way, however far, costs nothing: it cannot have changed in place. So it is for clusters: tiles
+# that change places within their tiling would travel across it.
 APART = 0.1
 
 Chosen = NDArray[np.bool_]
@@ -32,9 +34,7 @@ def swept_groups(related: Correspondence, groups: Groups, techniques: Techniques
         return np.full(groups.count, method == FRONT)
     clusters = _clusters(related, groups)
     named = _named(related, groups, techniques)
-    swept, travelled = (
-        np.bincount(clusters, costs, minlength=groups.count) for costs in _costs(related, groups)
-    )
+    swept, travelled = _costs(related, groups, clusters)
     cheaper = swept <= travelled
     by = {"auto": cheaper, FRONT: np.full_like(cheaper, True), MORPH: np.full_like(cheaper, False)}
     chosen = by[method]
@@ -93,22 +93,38 @@ def _followers(origin: PolygonSet, target: PolygonSet) -> Pairs:
     return np.asarray(np.column_stack([one, other])[inside])
 
 
-def _costs(related: Correspondence, groups: Groups) -> tuple[NDArray[np.float64], ...]:
-    """What each group costs (g,) if it is swept, and if it travels, in square units."""
-    here = _united(related.origin, groups.of_origin, groups.count)
-    there = _united(related.target, groups.of_target, groups.count)
-    swept = shapely.area(shapely.symmetric_difference(here, there))
+def _costs(
+    related: Correspondence, groups: Groups, clusters: Numbers
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What each cluster costs (g,) if it is swept, and if it travels, in square units."""
+    here, there, changed = _ends(related, groups.of_origin, groups.of_target, groups.count)
     centres = [
         shapely.get_coordinates(shapely.centroid(np.where(shapely.is_empty(one), other, one)))
         for one, other in ((here, there), (there, here))
     ]
     ways = centres[1] - centres[0]
-    laid = _shifted(here, ways)
-    left = shapely.area(shapely.symmetric_difference(laid, there))
-    areas = shapely.area(here), shapely.area(there)
-    apart = (areas[0] + areas[1] - swept) / 2 < APART * np.minimum(*areas)
-    way = np.where(apart, 0, np.hypot(*ways.T))
-    return swept, left + way * np.sqrt((areas[0] + areas[1]) / 2)
+    left = shapely.area(shapely.symmetric_difference(_shifted(here, ways), there))
+    widths = np.sqrt((shapely.area(here) + shapely.area(there)) / 2)
+    whole, wholes, outside = _ends(
+        related, clusters[groups.of_origin], clusters[groups.of_target], groups.count
+    )
+    areas = shapely.area(whole), shapely.area(wholes)
+    apart = (areas[0] + areas[1] - outside) / 2 < APART * np.minimum(*areas)
+    way = np.where(apart[clusters], 0, np.hypot(*ways.T))
+    changing, travelled = (
+        np.bincount(clusters, costs, minlength=groups.count)
+        for costs in (changed, left + way * widths)
+    )
+    return (changing + outside) / 2, travelled
+
+
+def _ends(
+    related: Correspondence, of_origin: Numbers, of_target: Numbers, count: int
+) -> tuple[NDArray[np.object_], NDArray[np.object_], NDArray[np.float64]]:
+    """The area of each group at both ends, and how much of it is in one of them only, all (g,)."""
+    here = _united(related.origin, of_origin, count)
+    there = _united(related.target, of_target, count)
+    return here, there, shapely.area(shapely.symmetric_difference(here, there))
 
 
 def _united(polygons: PolygonSet, numbers: Numbers, count: int) -> NDArray[np.object_]:

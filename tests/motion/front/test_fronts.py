@@ -44,9 +44,6 @@ from tests.motion.shapes import polygon_sets
 # Shares of the area that are rounding, of coordinates and of a page's tenths of pixels.
 ROUNDING, ROUNDED = 1e-9, 1e-6
 
-# The field has no islands; straightened levels may pinch off less than this share of the area.
-PINCHED = 1e-4
-
 # The small sample is for every day, the large one for make prove.
 PROVING = os.environ.get("HYPOTHESIS_PROFILE") == "prove"
 EXAMPLES = settings.default.max_examples if PROVING and settings.default else 12
@@ -172,7 +169,7 @@ def test_no_spot_burns_before_the_fire_is_there_nor_is_left_behind(fire: list[Ge
     unburnt = [around - shape for shape in fire]
     found = [islands(now, fire[0], fire[-1]) for now in fire]
     found += [islands(left, unburnt[-1], unburnt[0]) for left in unburnt]
-    assert max((area for areas in found for area in areas), default=0) < PINCHED * fire[-1].area
+    assert max((area for areas in found for area in areas), default=0) < ROUNDING * fire[-1].area
 
 
 def test_a_fire_grows_evenly_and_without_a_flash(fire: list[Geometry]) -> None:

@@ -113,7 +113,8 @@ def _parted(knots: Knots, wanted: Flags, other: Ints, level: Ints) -> tuple[Knot
     middle = np.zeros(wanted.shape, dtype=np.intp)
     middle[wanted] = len(knots.points) + number
     delay = np.zeros(wanted.shape, dtype=np.intp)
-    delay[wanted] = _delays(wanted, other, level)[wanted]
+    flat = (knots.share == knots.share[:, :1]).all(axis=1) & np.isin(knots.share[:, 0], [0, 1])
+    delay[wanted] = _delays(wanted, flat, other, level)[wanted]
     slots = np.concatenate([knots.triangles, middle], axis=1)
     shares = np.concatenate([knots.share, np.full(wanted.shape, np.nan)], axis=1)
     delays = np.concatenate([knots.delay, delay], axis=1)
@@ -139,16 +140,17 @@ def _parted(knots: Knots, wanted: Flags, other: Ints, level: Ints) -> tuple[Knot
     return found, parent
 
 
-def _delays(wanted: Flags, other: Ints, level: Ints) -> Ints:
+def _delays(wanted: Flags, flat: Flags, other: Ints, level: Ints) -> Ints:
     """By how much the middles of sides (T, 3) wait, so that no part has three of one time.
 
     Triangles that lie on one level with all corners hang together in trees. In each the middle of
-    the side towards the root, where another level is, waits for those of both other sides.
+    the side towards the root, where another level is, waits for those of both other sides: so no
+    middle is an island.
     """
     delay = np.zeros(wanted.shape, dtype=np.intp)
-    inner = wanted.sum(axis=1) >= 2
     if not (wanted.sum(axis=1) == 3).any():
         return delay
+    inner = (flat & wanted.any(axis=1)) | wanted.all(axis=1)
     rank = np.where(inner, len(wanted), 0)
     one, side = np.nonzero(wanted & inner[:, None])
     beside = other[one, side] // 3
@@ -164,7 +166,7 @@ def _delays(wanted: Flags, other: Ints, level: Ints) -> Ints:
         ranks = rank[other[triangle, sides] // 3]
         root = sides[np.argmin(ranks)]
         leaves = np.abs(delay[triangle, sides[sides != root]])
-        waits = leaves.max() + (len(leaves) == 2 and leaves[0] == leaves[1])
+        waits = leaves.max(initial=0) + (len(leaves) == 2 and leaves[0] == leaves[1])
         signed = waits if level[triangle, root] == 0 else -waits
         delay[triangle, root] = delay.reshape(-1)[other[triangle, root]] = signed
     return delay
