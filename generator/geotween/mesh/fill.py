@@ -14,6 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geotween.data.polygons import Shapes
+from geotween.mesh.mesh import Mesh
 
 # Lattice points stay this far from the boundary, in spacings. No point of a lattice triangle is
 # farther than 0.578 from all its corners, so that none reaches the boundary.
@@ -34,22 +35,16 @@ Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
-    """Triangles that tile polygons.
+class Filling(Mesh):
+    """A mesh of several polygons; its points are distinct, in lexicographic order.
 
-    Attributes
-    ----------
-    points : (k, 2) distinct, in lexicographic order.
-    triangles : (T, 3) corners, counter-clockwise.
-    owner : (T,) the polygon that each triangle is of, ascending.
+    ``owner`` (m,) is the polygon that each triangle is of, ascending.
     """
 
-    points: Floats
-    triangles: Ints
     owner: Ints
 
 
-def fill(polygons: Shapes, spacing: Floats) -> Mesh:
+def fill(polygons: Shapes, spacing: Floats) -> Filling:
     """A mesh of valid polygons (n,), with a lattice of the spacing (n,) of each.
 
     Notes
@@ -74,7 +69,7 @@ def fill(polygons: Shapes, spacing: Floats) -> Mesh:
     triangles = number.reshape(-1, 3).astype(np.intp)
     clockwise = doubled_areas(points, triangles) < 0
     triangles[clockwise] = triangles[clockwise][:, ::-1]
-    return Mesh(points, _flipped(points, triangles, owner), owner)
+    return Filling(points, flipped(points, triangles, owner), owner)
 
 
 def doubled_areas(points: Floats, triangles: Ints) -> Floats:
@@ -148,7 +143,7 @@ def _lattice(polygons: Shapes, spacing: Floats) -> tuple[Floats, Ints]:
     return points[found], owner[found[:, 0]]
 
 
-def _flipped(points: Floats, triangles: Ints, owner: Ints) -> Ints:
+def flipped(points: Floats, triangles: Ints, owner: Ints) -> Ints:
     """Triangles, of which flat ones have their longest side flipped, where that helps."""
     triangles = triangles.copy()
     for _ in range(FLIPS):

@@ -111,11 +111,9 @@ def _costs(
     areas = shapely.area(whole), shapely.area(wholes)
     apart = (areas[0] + areas[1] - outside) / 2 < APART * np.minimum(*areas)
     way = np.where(apart[clusters], 0, np.hypot(*ways.T))
-    changing, travelled = (
-        np.bincount(clusters, costs, minlength=groups.count)
-        for costs in (changed, left + way * widths)
-    )
-    return (changing + outside) / 2, travelled
+    changing = np.bincount(clusters, changed, groups.count)
+    travelled = np.bincount(clusters, left + way * widths, groups.count)
+    return (changing + outside) / 2, np.asarray(travelled, dtype=np.float64)
 
 
 def _ends(
