@@ -1,78 +1,90 @@
 "use strict";
 // The player of a geotween map: <geotween-map> behaves as a media element does.
-// The block keeps these names out of the page, so that two copies of this script get along;
-// the pure functions can be reached as customElements.get("geotween-map").parts.
+// The block keeps its names to itself.
 {
 const SVG = "http://www.w3.org/2000/svg";
-const WORDS = {
-  play: "Play", pause: "Pause", previous: "Previous step", next: "Next step", time: "Time",
-  place: (step, label, count) => `${label}, step ${step + 1} of ${count}`,
-};
 const ICONS = {
   play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z",
+  replay: "M12 5V1L7 6l5 5V7a6 6 0 1 1-6 6H4a8 8 0 1 0 8-8z",
   previous: "M6 5h2v14H6zM19 5v14l-10-7z", next: "M16 5h2v14h-2zM5 5v14l10-7z",
+  loop: "M7 7h10v3l4-4-4-4v3H5v6h2zM17 17H7v-3l-4 4 4 4v-3h12v-6h-2z",
 };
-
-// ---- pure: numbers in, numbers or text out ----
+const SPEEDS = [0.5, 1, 2, 4];
+const LABEL = 13, LEGIBLE = 8; // px of the map, and of the screen
 
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const mix = (a, b, t) => a + (b - a) * t;
 const thousandth = (x) => Math.round(x * 1000) / 1000;
 
-// A file holds differences, because small numbers are short.
 function summed(differences, stride = 1) {
   const values = Int32Array.from(differences);
   for (let i = stride; i < values.length; i++) values[i] += values[i - stride];
   return values;
 }
 
-// Vertices that tracks share: all points, and from which one to which each vertex goes, and when.
-function decodeVertices({ points, ways, jumps, moments, lives }) {
-  const count = ways.length;
+// Numbers as text: the last digit of each is one of 64, those before it of 26 that begin at 1.
+function numbers(text) {
+  const found = [];
+  for (let i = 0, high = 0; i < text.length; i++) {
+    const code = text.charCodeAt(i) - 35, digit = code - (code > 25) - (code > 57);
+    if (digit > 63) { high = high * 26 + digit - 63; continue; }
+    const folded = high * 64 + digit;
+    found.push(folded % 2 ? -(folded + 1) / 2 : folded / 2);
+    high = 0;
+  }
+  return Int32Array.from(found);
+}
+
+// Vertices that tracks share: from which point to which each goes, and when.
+function decodeVertices({ points, starts, ways, jumps, moments, lives }) {
+  const codes = numbers(ways), leaps = numbers(jumps), spells = numbers(lives), count = codes.length;
   const from = new Int32Array(count), to = new Int32Array(count);
   const since = new Float64Array(count), until = new Float64Array(count).fill(1);
-  let a = 0, b = 0, jump = 0, life = -3, left = 0, start = 0, end = 0;
+  let a = 0, b = 0, newStart = 0, newEnd = starts, jump = 0, life = -3, left = 0, start = 0, end = 0;
+  const next = (last, code, fresh) => code < 2 ? last + code : code === 2 ? fresh : last + leaps[jump++];
   for (let i = 0; i < count; i++) {
-    const way = +ways[i];
-    a += way ? way >> 1 : jumps[jump++];
-    b += way ? way & 1 : jumps[jump++];
+    const code = codes[i] % 5;
+    a = next(a, (codes[i] - code) / 5, newStart);
+    b = code === 4 ? a : next(b, code, newEnd);
+    if (a < starts) newStart = Math.max(newStart, a + 1);
+    newEnd = Math.max(newEnd, b + 1);
     from[i] = a;
     to[i] = b;
     if (a === b) continue;
     while (!left) {
-      start += lives[life += 3];
-      end += lives[life + 1];
-      left = lives[life + 2];
+      start += spells[life += 3];
+      end += spells[life + 1];
+      left = spells[life + 2];
     }
     left--;
     since[i] = moments[start];
     until[i] = moments[end];
   }
-  return { points: summed(points, 2), from, to, since, until };
+  return { points: summed(numbers(points), 2), from, to, since, until };
 }
 
-// A track's rings as numbers of vertices: by turns what to copy from a track before it, and runs.
+// A track's vertices by number: by turns copies from a track before it, and runs.
 function decodeNodes(track, base, unseen) {
-  const nodes = [];
+  const nodes = [], script = numbers(track.nodes);
   let place = 0, node = unseen;
-  for (let i = 0; i < track.nodes.length;) {
+  for (let i = 0; i < script.length;) {
     if (base) {
-      place += track.nodes[i++];
-      for (let count = track.nodes[i++]; count > 0; count--) nodes.push(base[place++]);
+      place += script[i++];
+      for (let count = script[i++]; count > 0; count--) nodes.push(base[place++]);
     }
-    if (i === track.nodes.length) break;
-    node += track.nodes[i++];
-    const count = track.nodes[i++];
+    if (i === script.length) break;
+    node += script[i++];
+    const count = script[i++];
     for (let k = Math.abs(count); k > 0; k--, node += Math.sign(count)) nodes.push(node);
   }
   return Int32Array.from(nodes);
 }
 
-// Where a track's own vertices are at each of its key times: displacements undone once.
+// A track's own vertices at each of its key times: displacements undone once.
 function decodeFrames(places) {
   const frames = [];
   for (const differences of places) {
-    const frame = summed(differences, 2), before = frames.at(-1);
+    const frame = summed(numbers(differences), 2), before = frames.at(-1);
     frames.push(before ? frame.map((value, i) => value + before[i]) : frame);
   }
   return frames;
@@ -87,7 +99,6 @@ function decodeSeams({ rings, seams = [] }) {
   return codes;
 }
 
-// All tracks. Those that share vertices say how much they differ from one before them.
 function decode(data) {
   const vertices = decodeVertices(data), found = [];
   let unseen = 0;
@@ -95,20 +106,31 @@ function decode(data) {
     const { rings, times, base } = track;
     const life = (track.life ?? []).map((i) => data.moments[i]);
     const decoded = { rings, times, life, vertices, codes: decodeSeams(track) };
-    if (track.nodes) {
+    if ("nodes" in track) {
       const nodes = decodeNodes(track, found[found.length - base]?.nodes, unseen);
       unseen = nodes.reduce((most, node) => Math.max(most, node + 1), unseen);
-      decoded.still = nodes.every((node) => vertices.from[node] === vertices.to[node]);
-      decoded.nodes = nodes;
+      Object.assign(decoded, { nodes }, movingOf(nodes, vertices));
     } else {
-      decoded.frames = decodeFrames(track.places);
+      const frames = decodeFrames(track.places), moves = frames.length > 1;
+      Object.assign(decoded, { frames, first: moves ? times[0] : 0, last: moves ? times.at(-1) : 0 });
     }
     found.push(decoded);
   }
   return found;
 }
 
-// t of a cubic Bézier curve at u. Bisection: there is one call per frame, and it cannot fail.
+// Which vertices move, since when the first, until when the last.
+function movingOf(nodes, { from, to, since, until }) {
+  const moving = Uint32Array.from(nodes.keys()).filter((i) => from[nodes[i]] !== to[nodes[i]]);
+  let first = moving.length ? 1 : 0, last = 0;
+  for (const i of moving) {
+    first = Math.min(first, since[nodes[i]]);
+    last = Math.max(last, until[nodes[i]]);
+  }
+  return { moving, first, last };
+}
+
+// A cubic Bézier curve at u, by bisection.
 function ease(points, u) {
   if (!points || u <= 0 || u >= 1) return clamp(u, 0, 1);
   const [x1, y1, x2, y2] = points;
@@ -121,36 +143,42 @@ function ease(points, u) {
   return clamp(at(y1, y2, high), 0, 1);
 }
 
-// Where one track gives way to another, that one is drawn.
-function isThere({ life: [since = 0, until = 1] }, t) {
+// Where one track gives way to another, that one is.
+function isThere({ life }, t) {
+  const [since = 0, until = 1] = life;
   return since <= t && (t < until || t === 1 && until === 1);
 }
 
-function verticesAt({ nodes, vertices, times, frames }, t) {
-  if (nodes) return sharedAt(vertices, nodes, t);
-  let k = 0;
-  while (k < times.length - 2 && times[k + 1] <= t) k++;
-  const [a, b] = [frames[k], frames[k + 1]];
-  const length = times[k + 1] - times[k];
-  const s = length > 0 ? clamp((t - times[k]) / length, 0, 1) : 1;
-  const xy = new Float64Array(a.length);
-  for (let i = 0; i < xy.length; i++) xy[i] = mix(a[i], b[i], s);
-  return xy;
-}
-
-function sharedAt({ points, from, to, since, until }, nodes, t) {
+function placesOf({ nodes, vertices, frames }) {
+  if (!nodes) return Float64Array.from(frames[0]);
   const xy = new Float64Array(2 * nodes.length);
   nodes.forEach((node, i) => {
-    const a = 2 * from[node], b = 2 * to[node];
-    const s = a === b ? 0 : clamp((t - since[node]) / (until[node] - since[node]), 0, 1);
-    xy[2 * i] = mix(points[a], points[b], s);
-    xy[2 * i + 1] = mix(points[a + 1], points[b + 1], s);
+    xy[2 * i] = vertices.points[2 * vertices.from[node]];
+    xy[2 * i + 1] = vertices.points[2 * vertices.from[node] + 1];
   });
   return xy;
 }
 
-// The lines a shape draws, as vertex numbers: whole rings (wanted is null), or the edges
-// with one code, joined into runs.
+function move(track, xy, t) {
+  if (track.nodes) return moveShared(track, xy, t);
+  const { times, frames } = track;
+  let k = 0;
+  while (k < times.length - 2 && times[k + 1] <= t) k++;
+  const a = frames[k], b = frames[k + 1], length = times[k + 1] - times[k];
+  const s = length > 0 ? clamp((t - times[k]) / length, 0, 1) : 1;
+  for (let i = 0; i < xy.length; i++) xy[i] = mix(a[i], b[i], s);
+}
+
+function moveShared({ nodes, moving, vertices: { points, from, to, since, until } }, xy, t) {
+  for (let k = 0; k < moving.length; k++) {
+    const i = moving[k], node = nodes[i], a = 2 * from[node], b = 2 * to[node];
+    const s = clamp((t - since[node]) / (until[node] - since[node]), 0, 1);
+    xy[2 * i] = mix(points[a], points[b], s);
+    xy[2 * i + 1] = mix(points[a + 1], points[b + 1], s);
+  }
+}
+
+// What a shape draws, by vertex numbers: whole rings (wanted is null), or runs of edges of one code.
 function linesOf({ rings, codes }, wanted) {
   const lines = [];
   let first = 0;
@@ -161,7 +189,7 @@ function linesOf({ rings, codes }, wanted) {
     if (gap === count && count) {
       lines.push({ closed: true, vertices: Array.from({ length: count }, (_, k) => first + k) });
     }
-    // Begins behind an edge that is not drawn, so that the ring's end cuts no run in two.
+    // Begins behind an edge that is not drawn: the ring's end cuts no run in two.
     for (let k = gap + 1, run = null; k < gap + count && gap < count; k++) {
       if (!drawn(k)) { run = null; continue; }
       if (!run) lines.push({ closed: false, vertices: run = [first + k % count] });
@@ -169,22 +197,7 @@ function linesOf({ rings, codes }, wanted) {
     }
     first += count;
   }
-  return lines;
-}
-
-// Positions are rounded as they are, never as differences: what touches goes on touching.
-function pathData(lines, xy, grid) {
-  const scale = grid * 100;
-  let text = "";
-  for (const { vertices, closed } of lines) {
-    let command = "M";
-    for (const v of vertices) {
-      text += command + Math.round(xy[2 * v] * scale) / 100 + " " + Math.round(xy[2 * v + 1] * scale) / 100;
-      command = command === "M" ? "L" : " ";
-    }
-    if (closed) text += "Z";
-  }
-  return text;
+  return lines.map(({ closed, vertices }) => ({ closed, vertices: Uint32Array.from(vertices) }));
 }
 
 function mixColour(a, b, t) {
@@ -194,18 +207,17 @@ function mixColour(a, b, t) {
     Math.round(mix(channel(a, i), channel(b, i), t)).toString(16).padStart(2, "0")).join("");
 }
 
-// A seam is not stroked while its two sides touch: it fades in and out over a twentieth.
+// The stroke of a seam fades in and out over a twentieth.
 function seamOpacity(code, u) {
   const opening = code & 1 ? 20 * u : 1;
   const closing = code & 2 ? 20 * (1 - u) : 1;
   return thousandth(clamp(Math.min(opening, closing), 0, 1));
 }
 
-// A rest may last no time at all, yet it wins over both transitions that meet there.
+// A rest wins over both transitions that meet there, even if it lasts no time.
 function spanAt(spans, time) {
-  return spans.find((span) => span.step !== null && span.start <= time && time <= span.end)
-    ?? spans.find((span) => span.step === null && span.start <= time && time < span.end)
-    ?? spans.at(-1);
+  const rest = spans.findIndex(({ step, start, end }) => step !== null && start <= time && time <= end);
+  return rest < 0 ? spans.findIndex(({ end }) => time < end) : rest;
 }
 
 function stepAt(steps, time) {
@@ -213,101 +225,517 @@ function stepAt(steps, time) {
     i === 0 || time >= (steps[i - 1].end + step.start) / 2));
 }
 
-// Which labels have room: the last and, from the left, all that keep clear of the ones
-// before; then the current one, in place of those it would cover.
-function roomFor(boxes, current) {
-  const apart = (a, b) => boxes[a].right <= boxes[b].left || boxes[b].right <= boxes[a].left;
-  const shown = [];
-  for (const i of [boxes.length - 1, ...boxes.keys()]) {
-    if (shown.every((other) => apart(i, other))) shown.push(i);
-  }
-  return new Set([current, ...shown.filter((i) => apart(i, current))]);
+// The line through points at x; of several with one x the first counts.
+function along(xs, ys, x) {
+  const k = xs.findIndex((value) => value >= x);
+  if (k < 0) return ys.at(-1);
+  return k === 0 || xs[k] === x ? ys[k] : mix(ys[k - 1], ys[k], (x - xs[k - 1]) / (xs[k] - xs[k - 1]));
 }
 
-// ---- the element ----
+// Starts and ends of rests, and their places on the axis: by the steps' times, if these rise.
+function axisOf(steps, duration) {
+  const moments = steps.map(({ time }) => (typeof time === "string" ? Date.parse(time) : time ?? NaN));
+  const first = moments[0], length = moments.at(-1) - first;
+  const real = length > 0 && moments.every((moment, i) => i === 0 || moment > moments[i - 1]);
+  const times = steps.flatMap(({ start, end }) => [start, end]);
+  const places = times.map((time, i) => (real ? duration * (moments[i >> 1] - first) / length : time));
+  return { times, places };
+}
+
+// Labels that have room: first, last, the current one moved between them, and what keeps clear.
+function roomFor(boxes, current) {
+  const first = boxes[0], last = boxes.at(-1), shown = new Map([[0, first], [boxes.length - 1, last]]);
+  if (!shown.has(current)) {
+    const { left, width } = boxes[current];
+    shown.set(current, { left: Math.max(first.width + first.left, Math.min(left, last.left - width)), width });
+  }
+  const clear = (a, b) => a.left + a.width <= b.left || b.left + b.width <= a.left;
+  boxes.forEach((box, i) => {
+    if (!shown.has(i) && [...shown.values()].every((other) => clear(box, other))) shown.set(i, box);
+  });
+  return shown;
+}
 
 function make(name, attributes = {}, ...children) {
-  const svg = ["g", "path", "svg"].includes(name);
+  const svg = ["g", "path", "svg", "text"].includes(name);
   const element = svg ? document.createElementNS(SVG, name) : document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (typeof value === "function") element.addEventListener(key, value);
+    else element.setAttribute(key, value);
+  }
   element.append(...children);
   return element;
 }
 
-// Writing an attribute costs style and paint work even when nothing changed. null removes.
-const written = new WeakMap();
+// Writing costs paint even when nothing changed. null removes.
 function put(element, name, value) {
-  if (!written.has(element)) written.set(element, {});
-  const known = written.get(element);
-  if (known[name] === value) return;
-  known[name] = value;
   if (value === null) element.removeAttribute(name);
-  else element.setAttribute(name, value);
+  else if (element.getAttribute(name) !== String(value)) element.setAttribute(name, value);
 }
 
-// As media elements do.
 function finite(value) {
-  if (!Number.isFinite(Number(value))) throw new TypeError(`not a finite number: ${value}`);
-  return Number(value);
+  if (Number.isFinite(+value)) return +value;
+  throw new TypeError(`not a finite number: ${value}`);
+}
+
+// Writes a path as bytes, so that it makes a single string. Places are rounded, not differences:
+// what touches goes on touching.
+class Pen {
+  #bytes = new Uint8Array(1 << 16);
+  #length = 0;
+  #decoder = new TextDecoder();
+
+  constructor(grid) { this.scale = 100 * grid; }
+
+  line({ vertices, closed }, xy) {
+    this.#makeRoom(26 * vertices.length);
+    for (let k = 0; k < vertices.length; k++) {
+      const i = 2 * vertices[k];
+      this.#bytes[this.#length++] = k === 0 ? 77 : k === 1 ? 76 : 32; // M, L, space
+      this.#number(Math.round(xy[i] * this.scale));
+      this.#bytes[this.#length++] = 32;
+      this.#number(Math.round(xy[i + 1] * this.scale));
+    }
+    if (closed) this.#bytes[this.#length++] = 90; // Z
+  }
+
+  take() {
+    const text = this.#decoder.decode(this.#bytes.subarray(0, this.#length));
+    this.#length = 0;
+    return text;
+  }
+
+  #number(hundredths) {
+    const bytes = this.#bytes;
+    let n = this.#length, rest = hundredths;
+    if (rest < 0) { bytes[n++] = 45; rest = -rest; } // -
+    let unit = 100;
+    while (10 * unit <= rest) unit *= 10;
+    for (; unit >= 100 || rest > 0; unit /= 10) {
+      if (unit === 10) bytes[n++] = 46; // .
+      const digit = rest / unit | 0;
+      bytes[n++] = 48 + digit;
+      rest -= digit * unit;
+    }
+    this.#length = n;
+  }
+
+  #makeRoom(more) {
+    if (this.#length + more + 1 <= this.#bytes.length) return;
+    const bytes = new Uint8Array(2 * (this.#length + more));
+    bytes.set(this.#bytes);
+    this.#bytes = bytes;
+  }
+}
+
+// All that a frame needs is made once.
+class Picture {
+  #frame = 0;
+  #pen;
+
+  constructor(figure, data) {
+    const stage = figure.querySelector("g.stage");
+    this.#pen = new Pen(data.grid);
+    Object.assign(this, { figure, data });
+    this.groups = data.groups.map(({ layer }) => make("g", { class: "layer", "data-layer": layer }));
+    this.slots = data.slots.map((slot) => this.#slot(slot));
+    this.spans = this.#spans();
+    this.words = [...figure.querySelectorAll(".annotation text, .scale-bar text")].map((element) => ({
+      element, size: Number(element.getAttribute("font-size")) }));
+    this.annotations = [...figure.querySelectorAll("g.annotation")].map((element) => ({
+      element, steps: element.dataset.steps.split(" ").map(Number) }));
+    const labels = figure.querySelector("g.labels");
+    labels?.replaceChildren();
+    this.labels = data.labels.map(({ text, key, room, spans }) => {
+      const element = make("text", {
+        class: "label", "data-key": key, "font-weight": 600,
+        "text-anchor": "middle", "dominant-baseline": "middle" }, text);
+      labels.append(element);
+      const way = (places) => [0, 1, 2].map((k) => places.map((place) => place[k]));
+      return { element, room, ways: data.spans.map((_, i) => spans[i] && way(spans[i])) };
+    });
+    stage.replaceChildren(...this.groups);
+  }
+
+  // On a small map labels grow to be read, or give way.
+  fit() {
+    const scale = this.figure.getScreenCTM()?.a || 1;
+    for (const { element, room = 1 } of this.labels) {
+      const size = LABEL * clamp(1 / scale, 1, room);
+      put(element, "font-size", size);
+      put(element, "display", size * scale < LEGIBLE ? "none" : null);
+    }
+    for (const { element, size } of this.words) put(element, "font-size", Math.max(size, LEGIBLE / scale));
+  }
+
+  draw(time, step) {
+    const { spans, easing } = this.data;
+    const place = spanAt(spans, time), span = spans[place];
+    const length = span.step === null ? span.end - span.start : 0;
+    const u = length > 0 ? (time - span.start) / length : 0;
+    const t = ease(easing, u);
+    for (let i = 0; i < this.groups.length; i++) {
+      const [a, b] = this.data.groups[i].opacity;
+      put(this.groups[i], "opacity", thousandth(mix(a, b, t)));
+    }
+    this.#frame++;
+    for (const shape of this.spans[place]) {
+      if (!shape.show || u >= shape.show[0] && u <= shape.show[1]) this.#drawShape(shape, u, t);
+    }
+    for (const slot of this.slots) put(slot.element, "visibility", slot.frame === this.#frame ? null : "hidden");
+    for (const { element, ways } of this.labels) this.#place(element, ways[place], t);
+    for (const { element, steps } of this.annotations) {
+      put(element, "visibility", steps.includes(step) ? null : "hidden");
+    }
+  }
+
+  #drawShape(shape, u, t) {
+    const { slot, from, to } = shape;
+    slot.frame = this.#frame;
+    this.#drawPath(shape, t);
+    put(slot.element, "fill", mixColour(from.fill, to.fill, t));
+    put(slot.element, "stroke", mixColour(from.stroke, to.stroke, t));
+    put(slot.element, "stroke-width", thousandth(mix(from.width, to.width, t)));
+    put(slot.element, "stroke-dasharray", (t < 0.5 ? from.dash : to.dash) || null);
+    if (slot.kind === "seam") put(slot.element, "stroke-opacity", seamOpacity(shape.code, u));
+  }
+
+  // Writes a path only if something of it has moved, come or gone.
+  #drawPath(shape, t) {
+    const { slot, parts } = shape;
+    let changed = slot.shape !== shape;
+    slot.shape = shape;
+    for (const part of parts) {
+      const moment = isThere(part.track, t) ? clamp(t, part.track.first, part.track.last) : null;
+      if (moment === part.moment) continue;
+      part.moment = moment;
+      if (moment !== null && part.track.last > 0) move(part.track, part.xy, moment);
+      changed = true;
+    }
+    if (!changed) return;
+    for (const { lines, xy, moment } of parts) {
+      if (moment !== null) for (const line of lines) this.#pen.line(line, xy);
+    }
+    put(slot.element, "d", this.#pen.take());
+  }
+
+  #place(element, way, t) {
+    put(element, "visibility", way ? null : "hidden");
+    if (!way) return;
+    const [times, xs, ys] = way;
+    put(element, "x", thousandth(along(times, xs, t)));
+    put(element, "y", thousandth(along(times, ys, t)));
+  }
+
+  #slot({ group, kind, key }) {
+    const region = kind === "region";
+    const element = make("path", {
+      class: kind, "stroke-linejoin": "round",
+      ...(region && { "data-layer": this.data.groups[group].layer }),
+      ...((region || key) && { "data-key": key }),
+    });
+    this.groups[group].append(element);
+    return { element, kind, shape: null, frame: 0 };
+  }
+
+  #spans() {
+    const { spans, paints } = this.data;
+    const tracks = decode(this.data), known = tracks.map(() => new Map());
+    const part = (index, wanted) => {
+      const track = tracks[index], lines = known[index];
+      if (!lines.has(wanted)) lines.set(wanted, linesOf(track, wanted));
+      return { track, lines: lines.get(wanted), xy: placesOf(track), moment: null };
+    };
+    return spans.map(({ shapes }) => shapes.map(({ slot: number, tracks: indices, paint, code, show }) => {
+      const slot = this.slots[number];
+      const wanted = { border: 0, seam: code }[slot.kind] ?? null;
+      const parts = Array.from(summed(indices), (index) => part(index, wanted));
+      return { slot, code, show, parts, from: paints[paint[0]], to: paints[paint[1]] };
+    }));
+  }
+}
+
+// Time passes while it plays and someone can see it.
+class Clock {
+  duration = 0;
+  loop = false;
+  paused = true;
+  rate = 1;
+  #exact = 0;
+  #awake = false;
+  #stamp = null;
+  #request = 0;
+
+  constructor(onTick) { this.onTick = onTick; }
+
+  get time() { return thousandth(this.#exact); }
+  set time(value) { this.#exact = clamp(value, 0, this.duration); }
+
+  set awake(value) {
+    this.#awake = value;
+    this.run();
+  }
+
+  run() {
+    const runs = this.#awake && !this.paused;
+    if (runs === Boolean(this.#request)) return;
+    if (!runs) cancelAnimationFrame(this.#request);
+    this.#request = runs ? requestAnimationFrame(this.#tick) : 0;
+    this.#stamp = null;
+  }
+
+  #tick = (now) => {
+    this.#request = requestAnimationFrame(this.#tick);
+    // Without frames for long it was not seen.
+    const passed = Math.min(now - (this.#stamp ?? now), 1000) / 1000;
+    this.#stamp = now;
+    const time = this.#exact + passed * this.rate, over = time >= this.duration;
+    const again = over && this.loop && this.duration > 0;
+    this.time = again ? time % this.duration : time;
+    this.onTick(now, over && !again);
+  };
+}
+
+// Who moves in time takes over: the clock stops.
+class Controls {
+  constructor(map, figure, { steps, duration, words }) {
+    const axis = axisOf(steps, duration);
+    Object.assign(this, { map, steps, words, axis, boxes: [] });
+    this.previous = this.#button("previous", () => this.#goTo(this.#before()));
+    this.play = this.#button("play", () => this.#toggle());
+    this.next = this.#button("next", () => this.#goTo(this.#after()));
+    this.loop = this.#button("loop", () => { map.loop = !map.loop; });
+    const rates = SPEEDS.map((rate) => make("option", { value: rate }, `${rate}×`.replace(".", words.decimal ?? ".")));
+    this.speed = make("select", {
+      class: "speed", "aria-label": words.speed, change: () => { map.playbackRate = this.speed.value; } }, ...rates);
+    this.range = make("input", {
+      type: "range", class: "time", max: duration, step: "any", "aria-label": words.time,
+      input: () => this.#moveTo(along(axis.places, axis.times, this.range.valueAsNumber)) });
+    // Arrow keys reach every step: no tab stops.
+    this.labels = steps.map(({ label }, i) =>
+      make("button", { type: "button", class: "mark", tabindex: -1, click: () => this.#goTo(i) }, label));
+    const ticks = steps.map(() => make("span", { class: "tick" }));
+    ticks.forEach((tick, i) => { tick.style.left = `${100 * this.#share(i)}%`; });
+    this.marks = make("div", { class: "marks" }, ...ticks, ...this.labels);
+    this.caption = make("p", { class: "caption" });
+    // Every caption takes its room, so that the page does not jump.
+    const sizers = steps.map((step) => make("p", { class: "sizer", "aria-hidden": "true" }, ...this.#text(step)));
+    this.element = make("div", { class: "controls" }, make("div", { class: "captions" }, this.caption, ...sizers));
+    if (steps.length > 1) {
+      this.element.prepend(make("div", { class: "transport" },
+        make("div", { class: "buttons" }, this.previous, this.play, this.next, this.loop, this.speed),
+        make("div", { class: "timeline" }, this.range, this.marks)));
+    }
+    figure.after(this.element);
+  }
+
+  #button(name, click) {
+    const icon = make("svg", { viewBox: "0 0 24 24", "aria-hidden": "true" }, make("path", { d: ICONS[name] }));
+    return make("button", { type: "button", class: name, "aria-label": this.words[name], click }, icon);
+  }
+
+  #text({ label, caption, alt }) {
+    return [make("strong", {}, label), " ", caption, make("span", { class: "unseen" }, ` ${alt}`)];
+  }
+
+  showTime(time) {
+    const { previous, next, range, axis, map } = this;
+    range.value = along(axis.times, axis.places, time);
+    range.style.setProperty("--done", `${100 * range.value / (map.duration || 1)}%`);
+    // Not `disabled`, which would drop the focus.
+    put(previous, "aria-disabled", this.#before() < 0 ? "true" : null);
+    put(next, "aria-disabled", this.#after() < 0 ? "true" : null);
+    this.showState();
+  }
+
+  showState() {
+    const { play, loop, speed, caption, map, words } = this;
+    const name = !map.paused ? "pause" : map.ended ? "replay" : "play";
+    put(play, "aria-label", words[name]);
+    put(play.querySelector("path"), "d", ICONS[name]);
+    put(loop, "aria-pressed", String(map.loop));
+    speed.value = map.playbackRate;
+    // What plays by itself is not read aloud.
+    put(caption, "aria-live", map.paused ? "polite" : "off");
+  }
+
+  showStep(current) {
+    const { caption, labels, range, words } = this;
+    const step = this.steps[current];
+    const values = { ...step, n: current + 1, count: labels.length };
+    caption.replaceChildren(...this.#text(step));
+    range.setAttribute("aria-valuetext", words.place.replace(/\{(\w+)\}/g, (_, name) => values[name]));
+    labels.forEach((label, i) => put(label, "aria-current", i === current ? "step" : null));
+    this.#placeMarks();
+  }
+
+  #share(i) { return this.axis.places[2 * i] / (this.map.duration || 1); }
+
+  fit() {
+    const room = this.marks.clientWidth;
+    this.boxes = this.labels.map((label, i) => {
+      const width = label.offsetWidth;
+      const left = clamp(room * this.#share(i) - width / 2, -10, Math.max(0, room - width + 10));
+      return { left, width };
+    });
+    this.#placeMarks();
+  }
+
+  #placeMarks() {
+    if (!this.boxes.length) return;
+    const shown = roomFor(this.boxes, this.map.currentStep);
+    this.labels.forEach((label, i) => {
+      label.style.visibility = shown.has(i) ? "" : "hidden";
+      label.style.left = `${(shown.get(i) ?? this.boxes[i]).left}px`;
+    });
+  }
+
+  #before() { return this.steps.findLastIndex((step) => step.end < this.map.currentTime); }
+  #after() { return this.steps.findIndex((step) => step.start > this.map.currentTime); }
+  #toggle() { if (this.map.paused) this.map.play(); else this.map.pause(); }
+  #goTo(step) { this.#moveTo(this.steps[step]?.start ?? this.map.currentTime); }
+  #moveTo(time) {
+    this.map.pause();
+    this.map.currentTime = time;
+  }
+
+  actionOf({ key, repeat, target }) {
+    if (this.steps.length < 2 || target === this.speed || key === " " && target.closest("button")) return null;
+    const toggle = () => repeat || this.#toggle();
+    const back = () => this.#goTo(this.#before());
+    const on = () => this.#goTo(this.#after());
+    return {
+      " ": toggle, k: toggle, K: toggle,
+      ArrowLeft: back, ArrowRight: on, PageUp: back, PageDown: on,
+      Home: () => this.#goTo(0), End: () => this.#goTo(this.steps.length - 1),
+      // Elsewhere these two scroll the page.
+      ...(target === this.range && { ArrowDown: back, ArrowUp: on }),
+    }[key];
+  }
+}
+
+// What is told of a region: under the mouse, at a tap, by keys.
+class Tips {
+  #step = 0;
+  #key = null;
+
+  constructor(map, figure, { tips, words }) {
+    // Empty it is unseen, yet a live region.
+    const element = make("div", { class: "tip" });
+    Object.assign(this, { map, figure, element, tips: tips.map((of) => new Map(Object.entries(of))) });
+    map.append(element);
+    put(figure, "role", "application");
+    put(figure, "tabindex", 0);
+    put(figure, "aria-description", words.regions);
+    const point = ({ type, pointerType, target, clientX, clientY }) => {
+      if (type !== "click" && pointerType === "touch") return;
+      this.#show(target.closest("path.region")?.dataset.key, "off");
+      this.#place(clientX, clientY);
+    };
+    for (const type of ["pointermove", "pointerleave", "click"]) figure.addEventListener(type, point);
+    figure.addEventListener("blur", () => this.#show());
+  }
+
+  showStep(step) {
+    this.#step = step;
+    this.#show(this.#regions().some(({ dataset }) => dataset.key === this.#key) ? this.#key : undefined);
+  }
+
+  actionOf({ key, shiftKey, target }) {
+    if (key === "Escape" && this.#key !== null) return () => this.#show();
+    return target === this.figure && /^n$/i.test(key) ? () => this.#walk(shiftKey ? -1 : 1) : null;
+  }
+
+  #walk(way) {
+    const keys = [...new Set(this.#regions().map(({ dataset }) => dataset.key))].filter((key) => this.#tip(key));
+    const place = keys.indexOf(this.#key) + way;
+    this.#show(keys.at(place < 0 ? -1 : place % keys.length), "polite");
+    const box = this.figure.querySelector(".here")?.getBoundingClientRect();
+    if (box) this.#place(box.x + box.width / 2, box.y + box.height / 2);
+  }
+
+  #regions() { return [...this.figure.querySelectorAll("g.stage path.region:not([visibility])")]; }
+
+  // What the nearest step says of a key.
+  #tip(key) {
+    const { tips } = this, step = this.#step;
+    for (let away = 0; away < tips.length; away++) {
+      const found = tips[step - away]?.get(key) ?? tips[step + away]?.get(key);
+      if (found) return found;
+    }
+  }
+
+  #show(key, live) {
+    const tip = this.#tip(key);
+    this.#key = tip ? key : null;
+    if (live) this.element.setAttribute("aria-live", live);
+    const row = ([label, value]) => [make("dt", {}, label), make("dd", {}, value)];
+    this.element.replaceChildren(...(tip ? [make("strong", {}, tip.name)] : []),
+      ...(tip?.rows.length ? [make("dl", {}, ...tip.rows.flatMap(row))] : []));
+    for (const region of this.figure.querySelectorAll("path.region")) {
+      region.classList.toggle("here", tip !== undefined && region.dataset.key === key);
+    }
+  }
+
+  // Above a point of the window, or below it.
+  #place(x, y) {
+    const { element } = this, box = this.map.getBoundingClientRect();
+    const { offsetWidth: width, offsetHeight: height } = element;
+    element.style.left = `${clamp(x - box.x - width / 2, 0, Math.max(0, box.width - width))}px`;
+    element.style.top = `${(y > height + 16 ? y - height - 12 : y + 20) - box.y}px`;
+  }
 }
 
 class GeotweenMap extends HTMLElement {
-  static parts = { decode, ease, isThere, verticesAt, linesOf, pathData, mixColour, seamOpacity, spanAt, stepAt, roomFor };
+  static parts = { decode, Picture };
 
-  loop = false;
-  #data = { duration: 0, steps: [], spans: [], groups: [], slots: [], paints: [] };
-  #tracks = [];
-  #groups = [];
-  #slots = [];
+  #steps = [];
+  #clock = new Clock((now, over) => this.#tick(now, over));
+  #picture = null;
   #controls = null;
+  #tips = null;
+  #step = null;
   #connection = null;
-  #time = 0;
-  #step = 0;
-  #span = null;
-  #texts = new Map();
-  #paused = true;
-  #rate = 1;
-  // The clock: time is #from + (now - #since), so that no frame's rounding adds up.
-  #from = 0;
-  #since = null;
-  #stamp = null;
+  #still = matchMedia("(prefers-reduced-motion: reduce)");
+  #seen = false;
   #told = -Infinity;
-  #request = 0;
 
-  get currentTime() { return this.#time; }
+  get currentTime() { return this.#clock.time; }
   set currentTime(value) {
-    this.#show(finite(value));
-    this.#rebase(this.#stamp);
+    this.#clock.time = thousandth(finite(value));
+    this.#show();
     this.#tell("timeupdate");
   }
-  get duration() { return this.#data.duration; }
-  get paused() { return this.#paused; }
-  get ended() { return !this.loop && this.#data.steps.length > 0 && this.#time >= this.duration; }
-  get steps() { return this.#data.steps.map(({ label, start, end }) => ({ label, start, end })); }
-  get currentStep() { return this.#step; }
-  get playbackRate() { return this.#rate; }
+  get duration() { return this.#clock.duration; }
+  get paused() { return this.#clock.paused; }
+  get ended() { return !this.loop && this.#steps.length > 0 && this.currentTime >= this.duration; }
+  get steps() { return this.#steps.map(({ label, start, end }) => ({ label, start, end })); }
+  get currentStep() { return this.#step ?? 0; }
+  get playbackRate() { return this.#clock.rate; }
   set playbackRate(value) {
-    this.#rate = finite(value);
-    this.#rebase(this.#stamp);
+    this.#set("rate", finite(value));
+    this.#tell("ratechange");
   }
+  get loop() { return this.#clock.loop; }
+  set loop(value) { this.#set("loop", Boolean(value)); }
 
   async play() {
-    if (!this.#paused) return;
+    if (!this.paused) return;
     if (this.ended) this.currentTime = 0;
-    this.#setPaused(false);
-    this.#run();
+    this.#set("paused", false);
+    this.#tell("play");
   }
 
   pause() {
-    if (this.#paused) return;
-    this.#halt();
-    this.#setPaused(true);
+    if (this.paused) return;
+    this.#set("paused", true);
+    this.#tell("pause");
   }
 
   connectedCallback() {
     this.#connection = new AbortController();
     const { signal } = this.#connection;
-    const fresh = !this.#controls;
+    const fresh = !this.#picture;
     if (fresh && !this.#build()) {
       // A script above the element sees it before its content has been read.
       const again = () => this.isConnected && this.connectedCallback();
@@ -316,287 +744,85 @@ class GeotweenMap extends HTMLElement {
       }
       return;
     }
-    // A hidden tab gets no frames; the time it was away must not count.
-    document.addEventListener("visibilitychange", () => { this.#halt(); this.#run(); }, { signal });
-    this.#controls.watch.observe(this.#controls.marks);
-    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (fresh && !calm && this.#data.steps.length > 1) this.play();
-    else this.#run();
+    const wake = () => { this.#clock.awake = this.#seen && !document.hidden; };
+    const sight = new IntersectionObserver((entries) => {
+      this.#seen = entries.at(-1).isIntersecting;
+      wake();
+    });
+    sight.observe(this.querySelector("svg"));
+    const size = new ResizeObserver(() => { this.#picture.fit(); this.#controls.fit(); });
+    size.observe(this);
+    document.addEventListener("visibilitychange", wake, { signal });
+    this.#still.addEventListener("change", () => this.#show(), { signal });
+    signal.addEventListener("abort", () => {
+      sight.disconnect();
+      size.disconnect();
+      this.#clock.awake = false;
+    });
+    if (fresh && !this.#still.matches && this.#steps.length > 1) this.play();
   }
 
-  disconnectedCallback() {
-    this.#connection.abort();
-    this.#controls?.watch.disconnect();
-    this.#halt();
-  }
-
-  // ---- clock ----
-
-  #run() {
-    if (this.#paused || this.#request || !this.isConnected) return;
-    this.#request = requestAnimationFrame(this.#tick);
-  }
-
-  #halt() {
-    cancelAnimationFrame(this.#request);
-    this.#request = 0;
-    this.#rebase(null);
-  }
-
-  #rebase(stamp) {
-    this.#from = this.#time;
-    this.#since = this.#stamp = stamp;
-  }
-
-  #tick = (now) => {
-    this.#request = requestAnimationFrame(this.#tick);
-    this.#since ??= now;
-    // A frame scrolled out of view gets no ticks either, and no event says so.
-    const away = now - (this.#stamp ?? now) - 1000;
-    if (away > 0) this.#since += away;
-    this.#stamp = now;
-    const { duration } = this;
-    let time = this.#from + (now - this.#since) / 1000 * this.#rate;
-    const over = this.#rate < 0 ? time < 0 : time >= duration;
-    if (over && this.loop && duration > 0) {
-      time = ((time % duration) + duration) % duration;
-      this.#from = time;
-      this.#since = now;
-    }
-    this.#show(time);
-    if (over && !(this.loop && duration > 0)) {
-      this.#tell("timeupdate");
-      this.pause();
-      if (this.ended) this.#tell("ended");
-    } else if (now - this.#told >= 100) {
-      this.#told = now;
-      this.#tell("timeupdate");
-    }
-  };
-
-  #tell(type, detail) {
-    this.dispatchEvent(detail ? new CustomEvent(type, { detail }) : new Event(type));
-  }
-
-  #setPaused(paused) {
-    this.#paused = paused;
-    this.#showPaused();
-    this.#tell(paused ? "pause" : "play");
-  }
-
-  // ---- picture ----
-
-  #show(time) {
-    this.#time = clamp(thousandth(time), 0, this.duration);
-    const { spans, steps, groups } = this.#data;
-    if (!spans.length) return;
-    const span = spanAt(spans, this.#time);
-    if (span !== this.#span) this.#texts.clear();
-    this.#span = span;
-    const length = span.step === null ? span.end - span.start : 0;
-    const u = length > 0 ? (this.#time - span.start) / length : 0;
-    const t = ease(this.#data.easing, u);
-    groups.forEach(({ opacity: [a, b] }, i) => put(this.#groups[i], "opacity", thousandth(mix(a, b, t))));
-    const shown = new Set();
-    for (const shape of span.shapes) {
-      if (shape.show && (u < shape.show[0] || u > shape.show[1])) continue;
-      shown.add(shape.slot);
-      this.#drawShape(shape, u, t);
-    }
-    this.#slots.forEach((slot, i) => put(slot, "visibility", shown.has(i) ? null : "hidden"));
-    this.#showTime();
-    const step = stepAt(steps, this.#time);
-    if (step === this.#step) return;
-    this.#step = step;
-    this.#showStep();
-    this.#tell("stepchange", { step });
-  }
-
-  #drawShape(shape, u, t) {
-    const slot = this.#slots[shape.slot], { kind } = this.#data.slots[shape.slot];
-    const [a, b] = shape.paint.map((i) => this.#data.paints[i]);
-    put(slot, "d", this.#textOf(shape, kind, t));
-    put(slot, "fill", mixColour(a.fill, b.fill, t));
-    put(slot, "stroke", mixColour(a.stroke, b.stroke, t));
-    put(slot, "stroke-width", thousandth(mix(a.width, b.width, t)));
-    put(slot, "stroke-dasharray", (t < 0.5 ? a.dash : b.dash) || null);
-    if (kind === "seam") put(slot, "stroke-opacity", seamOpacity(shape.code, u));
-  }
-
-  // What stands still becomes text once per span, what moves becomes text at every frame.
-  #textOf(shape, kind, t) {
-    const { grid } = this.#data;
-    if (!this.#texts.has(shape)) {
-      const wanted = { border: 0, seam: shape.code }[kind] ?? null;
-      this.#texts.set(shape, [...summed(shape.tracks)].map((index) => ({
-        track: this.#tracks[index], lines: linesOf(this.#tracks[index], wanted), text: null })));
-    }
-    return this.#texts.get(shape).filter(({ track }) => isThere(track, t)).map((part) => {
-      if (part.text) return part.text;
-      const text = pathData(part.lines, verticesAt(part.track, t), grid);
-      if (part.track.still) part.text = text;
-      return text;
-    }).join("");
-  }
-
-  // ---- building ----
+  disconnectedCallback() { this.#connection.abort(); }
 
   #build() {
     const json = this.querySelector("script[type='application/json']");
     const figure = this.querySelector("svg");
-    const stage = figure?.querySelector("g.stage");
-    if (!json || !stage) return false;
+    if (!json || !figure?.querySelector("g.stage")) return false;
     const data = JSON.parse(json.textContent);
-    if (data.version !== 2) throw new RangeError("geotween-map reads keyframes of version 2");
-    this.#data = data;
-    this.#tracks = decode(data);
-    this.loop = data.loop;
-    this.#groups = data.groups.map(({ layer }) => make("g", { class: "layer", "data-layer": layer }));
-    this.#slots = data.slots.map(({ group, kind, key }) => {
-      const region = kind === "region";
-      const path = make("path", {
-        class: kind, "stroke-linejoin": "round",
-        ...(region && { "data-layer": data.groups[group].layer }),
-        ...((region || key) && { "data-key": key }),
-      });
-      this.#groups[group].append(path);
-      return path;
-    });
-    stage.replaceChildren(...this.#groups);
-    this.#buildControls(figure);
-    this.#show(0);
-    this.#showStep();
-    this.#showPaused();
+    if (data.version !== 3) throw new RangeError("geotween-map reads keyframes of version 3");
+    // A clone of a playing element brings controls that nobody listens to.
+    for (const old of this.querySelectorAll(":scope > .controls, :scope > .tip")) old.remove();
+    this.#steps = data.steps;
+    Object.assign(this.#clock, { duration: data.duration, loop: data.loop });
+    this.#picture = new Picture(figure, data);
+    this.#controls = new Controls(this, figure, data);
+    if (data.tips.some((of) => Object.keys(of).length)) this.#tips = new Tips(this, figure, data);
+    this.addEventListener("keydown", (event) => this.#press(event));
+    if (!this.hasAttribute("role")) this.setAttribute("role", "group");
+    this.#show();
     return true;
   }
 
-  #buildControls(figure) {
-    const { steps, duration } = this.#data;
-    const button = (name, press) => {
-      const element = make("button", { type: "button", class: name, "aria-label": WORDS[name] },
-        make("svg", { viewBox: "0 0 24 24", "aria-hidden": "true" }, make("path", { d: ICONS[name] })));
-      element.addEventListener("click", press);
-      return element;
-    };
-    const previous = button("previous", () => this.#goTo(this.#previous()));
-    const play = button("play", () => this.#toggle());
-    const next = button("next", () => this.#goTo(this.#next()));
-    const range = make("input", {
-      type: "range", class: "time", min: 0, max: duration, step: 0.01, "aria-label": WORDS.time });
-    // The range's last whole hundredth may lie just short of the end.
-    range.addEventListener("input", () => this.#moveTo(
-      range.valueAsNumber + 0.01 > duration ? duration : range.valueAsNumber));
-    // Arrow keys reach every step already; a tab stop for each would be in the way.
-    const labels = steps.map((step, i) => {
-      const label = make("button", { type: "button", class: "mark", tabindex: -1, title: step.label }, step.label);
-      label.addEventListener("click", () => this.#goTo(i));
-      return label;
-    });
-    const ticks = steps.map((step) => {
-      const tick = make("span", { class: "tick" });
-      tick.style.left = `${100 * step.start / (duration || 1)}%`;
-      return tick;
-    });
-    const marks = make("div", { class: "marks" }, ...ticks, ...labels);
-    // Unseen, every caption takes its room: the page does not jump from step to step.
-    const text = ({ label, caption }) => [make("strong", {}, label), " ", make("span", {}, caption ?? "")];
-    const caption = make("p", { class: "caption" });
-    const sizers = steps.map((step) => make("p", { class: "sizer", "aria-hidden": "true" }, ...text(step)));
-    const transport = make("div", { class: "transport" }, previous, play, next,
-      make("div", { class: "timeline" }, range, marks));
-    const element = make("div", { class: "controls" }, make("div", { class: "captions" }, caption, ...sizers));
-    if (steps.length > 1) element.prepend(transport);
-    const watch = new ResizeObserver(() => this.#measureMarks());
-    this.#controls = { previous, play, next, range, labels, marks, caption, text, watch, boxes: null };
-    // A clone of a playing element brings controls that nobody listens to.
-    for (const old of this.querySelectorAll(":scope > .controls")) old.remove();
-    figure.after(element);
-    if (!this.hasAttribute("role")) this.setAttribute("role", "group");
-    if (steps.length > 1) this.addEventListener("keydown", (event) => this.#press(event));
-  }
-
-  // ---- controls follow the picture ----
-
-  #showTime() {
-    const { previous, next, range } = this.#controls;
-    range.value = this.#time;
-    range.style.setProperty("--done", `${100 * this.#time / (this.duration || 1)}%`);
-    // Not `disabled`, which would drop the focus of someone who steps to the end.
-    put(previous, "aria-disabled", this.#previous() < 0 ? "true" : null);
-    put(next, "aria-disabled", this.#next() < 0 ? "true" : null);
-  }
-
-  #showStep() {
-    const { caption, text, labels, range } = this.#controls;
-    const step = this.#data.steps[this.#step];
-    if (!step) return;
-    caption.replaceChildren(...text(step));
-    range.setAttribute("aria-valuetext", WORDS.place(this.#step, step.label, labels.length));
-    labels.forEach((label, i) => put(label, "aria-current", i === this.#step ? "step" : null));
-    this.#placeMarks();
-  }
-
-  #showPaused() {
-    const { play, caption } = this.#controls ?? {};
-    if (!play) return;
-    const name = this.#paused ? "play" : "pause";
-    play.setAttribute("aria-label", WORDS[name]);
-    play.querySelector("path").setAttribute("d", ICONS[name]);
-    // Read aloud only what the reader asked for, not what plays by itself.
-    caption.setAttribute("aria-live", this.#paused ? "polite" : "off");
-  }
-
-  #measureMarks() {
-    const { labels, marks } = this.#controls;
-    const room = marks.clientWidth;
-    this.#controls.boxes = labels.map((label, i) => {
-      const width = label.offsetWidth;
-      const centre = room * this.#data.steps[i].start / (this.duration || 1);
-      // The marks' box is narrower than the range by half a thumb on either side.
-      const left = clamp(centre - width / 2, -10, Math.max(0, room - width + 10));
-      label.style.left = `${left}px`;
-      return { left, right: left + width };
-    });
-    this.#placeMarks();
-  }
-
-  #placeMarks() {
-    const { labels, boxes } = this.#controls;
-    if (!boxes?.length) return;
-    const shown = roomFor(boxes, this.#step);
-    labels.forEach((label, i) => { label.style.visibility = shown.has(i) ? "" : "hidden"; });
-  }
-
-  // ---- the reader's hand: who moves in time takes over, so the clock stops ----
-
-  #previous() { return this.#data.steps.findLastIndex((step) => step.end < this.#time); }
-  #next() { return this.#data.steps.findIndex((step) => step.start > this.#time); }
-  #toggle() { if (this.#paused) this.play(); else this.pause(); }
-  // Before the first step and after the last there is nowhere to go, yet the wish to stop counts.
-  #goTo(step) { this.#moveTo(this.#data.steps[step]?.start ?? this.#time); }
-  #moveTo(time) {
-    this.pause();
-    this.currentTime = time;
+  #set(name, value) {
+    this.#clock[name] = value;
+    this.#clock.run();
+    this.#controls?.showState();
   }
 
   #press(event) {
     if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey) return;
-    const onRange = event.target === this.#controls.range;
-    if (event.key === " " && event.target.closest("button")) return;
-    const toggle = () => event.repeat || this.#toggle();
-    const back = () => this.#goTo(this.#previous());
-    const on = () => this.#goTo(this.#next());
-    const action = {
-      " ": toggle, k: toggle, K: toggle,
-      ArrowLeft: back, ArrowRight: on, PageUp: back, PageDown: on,
-      Home: () => this.#goTo(0), End: () => this.#goTo(this.#data.steps.length - 1),
-      // Elsewhere these two scroll the page.
-      ...(onRange && { ArrowDown: back, ArrowUp: on }),
-    }[event.key];
+    const action = this.#tips?.actionOf(event) ?? this.#controls.actionOf(event);
     if (!action) return;
     event.preventDefault();
     action();
   }
+
+  #tick(now, over) {
+    this.#show();
+    if (!over && now - this.#told < 100) return;
+    this.#told = now;
+    this.#tell("timeupdate");
+    if (!over) return;
+    this.pause();
+    this.#tell("ended");
+  }
+
+  #show() {
+    if (!this.#picture) return;
+    const before = this.#step, step = stepAt(this.#steps, this.currentTime);
+    // Where motion is not welcome one step follows another at once.
+    const time = this.#still.matches ? this.#steps[step].start : this.currentTime;
+    this.#picture.draw(time, step);
+    if (step !== before) {
+      this.#step = step;
+      this.#controls.showStep(step);
+      this.#tips?.showStep(step);
+      if (before !== null) this.#tell("stepchange", { step });
+    }
+    this.#controls.showTime(time);
+  }
+
+  #tell(type, detail = null) { this.dispatchEvent(new CustomEvent(type, { detail })); }
 }
 
 if (!customElements.get("geotween-map")) customElements.define("geotween-map", GeotweenMap);

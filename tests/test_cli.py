@@ -37,7 +37,7 @@ def test_version() -> None:
 
 
 @pytest.mark.parametrize("flag", ["-h", "--help"])
-@pytest.mark.parametrize("command", ["", "build", "check", "schema"])
+@pytest.mark.parametrize("command", ["", "build", "check", "events", "schema"])
 def test_help_shows_examples(command: str, flag: str) -> None:
     result = run(*command.split(), flag)
     assert result.exit_code == 0
@@ -48,8 +48,8 @@ def test_help_shows_examples(command: str, flag: str) -> None:
 
 def test_help_lists_the_commands_and_the_exit_status() -> None:
     text = run("--help").stdout
-    assert [word for word in ("build", "check", "schema") if f"\n  {word}  " in text] == [
-        "build", "check", "schema",
+    assert [word for word in ("build", "check", "events", "schema") if f"\n  {word}  " in text] == [
+        "build", "check", "events", "schema",
     ]  # fmt: skip
     assert "0 done, 1 warnings (check, build --strict), 2 wrong usage, or errors" in " ".join(
         text.split()

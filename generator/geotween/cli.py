@@ -46,6 +46,7 @@ def main() -> None:
       geotween build fire.yaml -o public        fire.html, fire.svg and index.html
       geotween build scenes/*.yaml -o public -q
       geotween check fire.yaml                  what is wrong with it, if anything
+      geotween events fire.yaml                 what happens in it
       geotween schema > scene.schema.json       for your editor
     """
     for stream in (sys.stdout, sys.stderr):
@@ -158,6 +159,49 @@ def check(
     if as_json:
         click.echo(json.dumps(told, indent=2, ensure_ascii=False))
     raise SystemExit(PROBLEMS if worst else DONE)
+
+
+@main.command()
+@_SCENES
+@click.option(
+    "--format", "form", default="table", show_default=True,
+    type=click.Choice(["table", "csv", "json"]), help="How to write them.",
+)  # fmt: skip
+@click.option(
+    "-o", "--out", metavar="FILE", type=click.Path(dir_okay=False, path_type=Path),
+    help="Write to a file instead of the terminal.",
+)  # fmt: skip
+@_SANDBOX
+def events(scenes: tuple[Path, ...], form: str, out: Path | None, sandbox: Path | None) -> None:
+    """Tell what happens in scenes: what grew, moved, split, merged, came and went.
+
+    \b
+    Examples:
+      geotween events fire.yaml
+      geotween events scenes/*.yaml --format csv -o events.csv
+    """
+    from geotween.scene.errors import SceneError
+    from geotween.story.records import csv_text, scene_record, table_text
+    from geotween.story.words import words_of_scene
+
+    try:
+        loaded = _load(scenes, sandbox)
+        words = [words_of_scene(scene) for scene in loaded]
+    except SceneError as error:
+        _fail(str(error))
+    records = [scene_record(s, words=w) for s, w in zip(loaded, words, strict=True)]
+    if form == "json":
+        text = json.dumps(records, indent=2, ensure_ascii=False) + "\n"
+    else:
+        tables = map(table_text, records, words)
+        text = csv_text(records) if form == "csv" else "\n".join(tables)
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    try:
+        out.write_text(text, encoding="utf-8", newline="")
+    except OSError as error:
+        _fail(f"cannot write to {out}: {error.strerror}")
 
 
 @main.command()

@@ -100,8 +100,10 @@ def test_the_index_shows_a_still_and_a_title_of_each(gallery: Path, browser: Bro
         assert [Path(link).name for link in links] == [f"{path.stem}.html" for path in SCENES]
 
 
-def test_without_script_the_page_shows_the_first_step(gallery: Path, browser: Browser) -> None:
+def test_without_script_the_page_shows_all_steps(gallery: Path, browser: Browser) -> None:
     file = gallery / "lake.html"
     with drawn.open_page(browser, file, java_script_enabled=False) as page:
-        assert page.locator("geotween-map svg path.region").first.is_visible()
+        stills = page.locator(".multiples figure svg")
+        assert stills.count() == len(geotween.load(resource("scenes") / "lake.yaml").steps)
+        assert all(still.is_visible() for still in stills.all())
         assert page.locator("geotween-map .controls").count() == 0

@@ -12,10 +12,11 @@ from shapely.geometry import box
 
 from geotween.data.polygons import Feature, polygon_set
 from geotween.export.coded import coded, script
+from geotween.export.decoded import Told, read_script, tracks_told
+from geotween.export.numerals import heard
 from geotween.export.page_grid import GRID, GridTrack, fit_page, on_grid, resting
 from geotween.motion.front.film import tracks_of
 from geotween.scene.model import Map
-from tests.export.told import Told, read_script, tracks_told
 from tests.motion.front.filmed import Mesh, by_chance, things
 
 UNIT = polygon_set([Feature(box(0, 0, 1, 1))])
@@ -90,7 +91,7 @@ def test_what_rests_alike_is_told_once_and_places_are_too() -> None:
     told = coded([first, again, beside])
     assert len(told.tracks) == 2
     assert told.numbers[first] == told.numbers[again] == 0
-    assert len(told.shared["points"]) == 2 * 6
+    assert len(heard(told.shared["points"])) == 2 * 6
     assert len(told.shared["ways"]) == 6
 
 

@@ -10,12 +10,12 @@ import pytest
 
 import geotween
 from geotween.export.build import plan_scene
+from geotween.export.decoded import tracks_told
 from geotween.export.keyframes import Keyframes, keyframes
 from geotween.export.page import keyframes_json
 from geotween.export.paint import PALETTE, RAMP
 from geotween.export.svg import animated_svg
 from geotween.export.words import words
-from tests.export.told import tracks_told
 
 Write = Callable[..., Path]
 WHOLE = "{class: whole, polygon: [[0, 0], [8, 0], [8, 8], [0, 8]]}"

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geotween.data.checks import doubts
 from geotween.data.frame import check_size, pixels_per_unit
 from geotween.data.globe.place import crs_of_all, place
+from geotween.data.notes import Note, notes_of
 from geotween.data.polygons import (
     Feature,
     PolygonSet,
@@ -34,26 +35,34 @@ from geotween.scene.model import Layer, SceneFile
 from geotween.scene.read import check_transitions, read_scene
 from geotween.scene.values import UNWRITABLE, Time
 
+if TYPE_CHECKING:
+    from pyproj import CRS
+
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """The polygon set at one time, with its words."""
+    """The polygon set at one time, with its words.
+
+    ``exact`` has the same polygons as ``regions``, not simplified: they are measured, not drawn.
+    """
 
     label: str
     time: Time | None
     caption: str
     hold: float
     regions: PolygonSet
+    exact: PolygonSet
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
     """A scene ready to be planned: its model, its steps and what was mended in them.
 
-    ``layers`` are the static shapes underneath, each with its polygons; ``layer_order`` names the
-    layers of the regions, the lowest first. All coordinates are in the plane that ``projection``
-    tells in words; with ``fit: each`` every step is already centred in the frame of the first one
-    that has polygons. ``projection`` is empty where coordinates are drawn as they are.
+    ``layers`` are the static shapes underneath or above, each with its polygons; ``layer_order``
+    names the layers of the regions, the lowest first. All coordinates are in the plane that
+    ``projection`` tells in words, which is that of the system ``crs`` if one is known; with
+    ``fit: each`` every step is already centred in the frame of the first one that has polygons.
+    ``projection`` is empty where coordinates are drawn as they are.
     """
 
     name: str
@@ -64,6 +73,9 @@ class Scene:
     layer_order: tuple[str, ...]
     projection: str
     problems: tuple[Problem, ...]
+    crs: CRS | None = None
+    notes: tuple[Note, ...] = ()
+    words: Document | None = None
 
     def __iter__(self) -> Iterator[Step]:
         return iter(self.steps)
@@ -92,12 +104,26 @@ def load(path: str | os.PathLike[str], sandbox: str | os.PathLike[str] | None = 
         reader.members(values, "steps")
     members = members_of(reader, model, values) if model else []
     layers = reader.members(values.get("map"), "layers", ("map",))
+    words = _words(reader, model) if model else None
     faults += reader.faults
     if model is None or faults:
         raise SceneError(sorted(set(faults)))
     _check_steps(document, model, values, members)
     static = [layers.get(i, Held([])) for i in range(len(model.map.layers))]
-    return _scene(document, model, members, static)
+    return replace(_scene(document, model, members, static), words=words)
+
+
+def _words(reader: SourceReader, model: SceneFile) -> Document | None:
+    """The file of wording that a scene names; what is wrong goes to the reader."""
+    name, at = model.story.words, ("story", "words")
+    path = None if name is None else reader.path(name, at)
+    if name is None or path is None:
+        return None
+    try:
+        return Document(name, path, read_text(path, name, named_by=reader.document.fault(at, "")))
+    except SceneError as error:
+        reader.faults += error.faults
+        return None
 
 
 def _check_steps(
@@ -167,8 +193,10 @@ def _scene(
         document.path,
         model,
         tuple(
-            Step(member.label, member.time, member.caption, member.hold, regions)
-            for member, regions in zip(members, sets, strict=True)
+            Step(member.label, member.time, member.caption, member.hold, regions, exact)
+            for member, regions, exact in zip(
+                members, sets, map(polygon_set, tidied.exact), strict=True
+            )
         ),
         tuple(zip(model.map.layers, map(polygon_set, tidied.static), strict=True)),
         tidied.layers,
@@ -177,6 +205,8 @@ def _scene(
             in_kilometres(problem, placed.metres)
             for problem in condensed([*problems, *tidied.problems, *doubts(model, sets, members)])
         ),
+        placed.plane,
+        notes_of(document, model.map, labels, placed, [i for s in sets for i in s.identities]),
     )
 
 

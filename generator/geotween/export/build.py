@@ -14,7 +14,8 @@ from markupsafe import Markup
 
 from geotween.data.load import Scene
 from geotween.data.problems import Problem
-from geotween.export.keyframes import keyframes
+from geotween.export.furniture.language import words_in
+from geotween.export.keyframes import Keyframes, keyframes
 from geotween.export.page import page, render
 from geotween.export.svg import animated_svg, still_svg
 from geotween.export.words import words
@@ -22,6 +23,7 @@ from geotween.motion.measure import measure
 from geotween.motion.morph import Morph, plan
 from geotween.motion.techniques import resolve
 from geotween.scene.model import Motion
+from geotween.story.captions import told
 
 FORMATS = ("html", "svg")
 INDEX = "index.html"
@@ -156,15 +158,28 @@ def render_scene(
     if unknown:
         raise ValueError(f"unknown format {unknown[0]!r}; expected {' or '.join(FORMATS)}")
     morphs, problems = plan_scene(scene)
-    frames = keyframes(scene, morphs)
-    model = scene.model
+    model, happened = scene.model, told(scene)
+    frames = _captioned(keyframes(scene, morphs), happened)
     svg_name, page_name = f"{scene.name}.svg", f"{scene.name}.html"
     svg_link = quote(svg_name) if "svg" in wanted else ""
     files: dict[str, bytes] = {}
     if "html" in wanted:
-        text = page(frames, model, svg_href=svg_link, index_href=index_href)
+        # What a caption says already is not said again.
+        alts = [
+            "" if text == caption else text
+            for text, caption in zip(happened, frames.captions, strict=True)
+        ]
+        text = page(
+            frames,
+            model,
+            svg_href=svg_link,
+            index_href=index_href,
+            alternative=happened,
+            alts=alts,
+        )
         files[page_name] = text.encode()
-    origins = [f"Source: {model.source}" if model.source else "", model.credit]
+    named = words_in(model.lang)["source"].format(source=model.source) if model.source else ""
+    origins = [named, model.credit]
     source = " · ".join(filter(None, origins))
     description = model.description or model.subtitle
     around = words(frames, model.title, source) if "svg" in wanted else None
@@ -185,6 +200,12 @@ def render_scene(
         scene.projection,
         (*problems, *frames.problems),
     )
+
+
+def _captioned(frames: Keyframes, happened: Sequence[str]) -> Keyframes:
+    """Keyframes whose steps say what happened before them where the scene says nothing."""
+    first, *others = zip(frames.captions, happened, strict=True)
+    return replace(frames, captions=(first[0], *(caption or text for caption, text in others)))
 
 
 def _shown_step(scene: Scene) -> int:

@@ -1,14 +1,15 @@
 """Tracks as the page's file tells them: places and vertices once, rings as runs of numbers.
 
-    points   x, y of all places at which vertices rest, or their straight ways begin or end
-    ways     from which point to which vertices go, the same one twice where they rest: 2 is on to
-             the next point from the one before, 1 on to the next point to go to, 3 both;
-    jumps    and 0 on by what comes next here, two numbers
+    points   x, y of all places: first those, ``starts`` of them, that are first seen as starts
+    ways     from which point to which a vertex goes: one number each, 5 * start + end
+    jumps    what these two say is told here, as differences from the vertex before
     lives    when vertices that move do so, since and until as numbers of ``moments``, and how many
     tracks   rings of vertices
 
-Lists hold differences, because small numbers are short. A ring that is much like an earlier one
-says what it has of that. Vertices that move each for itself are told with their track instead.
+A start is 0 the one of the vertex before, 1 the point after it, 2 the first that no vertex had, 3
+a jump; an end likewise, or 4 where the vertex rests. Lists hold differences, because small numbers
+are short, and are written as numerals.py has it. A ring that is much like an earlier one says what
+it has of that. Vertices that move each for itself are told with their track instead.
 """
 
 from __future__ import annotations
@@ -20,12 +21,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geotween.export.numerals import told
 from geotween.export.page_grid import GridFilm, GridTrack, packed
 
 Numbers = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 NOBODY = -1
+
+# What a vertex's start and end say beyond 0 and 1, the ones of the vertex before and those after.
+NEW, JUMP, REST = 2, 3, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,19 +58,28 @@ def coded(tracks: Iterable[GridTrack]) -> Coded:
         [*table.lives.ravel().tolist(), *(t for track in shown for t in track.life)]
     )
     moving = np.searchsorted(moments, table.lives[:, table.ways[0] != table.ways[1]])
-    steps = np.diff(table.ways, axis=1, prepend=0)
-    digits = np.where(((steps == 0) | (steps == 1)).all(axis=0), 2 * steps[0] + steps[1], 0)
+    ways, jumps = _ways(table)
     return Coded(
         {
-            "points": differences(table.points),
-            "ways": "".join(map(str, digits.tolist())),
-            "jumps": steps[:, digits == 0].T.ravel().tolist(),
+            "points": told(differences(table.points)),
+            "starts": int(table.new[0].sum()),
+            "ways": told(ways),
+            "jumps": told(jumps),
             "moments": moments.tolist(),
-            "lives": _spells(moving),
+            "lives": told(_spells(moving)),
         },
         _tracks(shown, table, moments),
         {track: places[name] for track, name in names.items()},
     )
+
+
+def _ways(table: _Table) -> tuple[Numbers, Numbers]:
+    """A number (v,) for the way of each vertex, and what jumps (j,) are told beside them."""
+    steps = np.diff(table.ways, axis=1, prepend=0)
+    codes = np.where((steps == 0) | (steps == 1), steps, JUMP)
+    codes[(codes == JUMP) & table.new] = NEW
+    codes[1, table.ways[0] == table.ways[1]] = REST
+    return 5 * codes[0] + codes[1], steps.T[codes.T == JUMP]
 
 
 def differences(values: Sequence[int] | Numbers) -> list[int]:
@@ -86,11 +100,13 @@ def _name(track: GridTrack) -> object:
 class _Table:
     """What tracks share: ``points`` (p, 2), and the vertices that go from one to another.
 
-    ``ways`` (2, v) are points, ``lives`` (2, v) times. ``sequences`` are the vertices of tracks.
+    ``ways`` (2, v) are points, ``new`` (2, v) where no vertex before had them, ``lives`` (2, v)
+    times. ``sequences`` are the vertices of tracks.
     """
 
     points: Numbers
     ways: Numbers
+    new: NDArray[np.bool_]
     lives: Floats
     sequences: dict[GridTrack, Numbers]
 
@@ -108,17 +124,19 @@ def _table(tracks: list[GridTrack]) -> _Table:
     order = np.concatenate([np.empty(0, dtype=np.int64), *fresh])
     number = np.full(places.shape[1], NOBODY)
     number[order] = np.arange(len(order))
-    # All starts of one track before all ends: each of both follows a line.
-    ends = [packed(places[end, new]) for new in fresh for end in (0, 1)]
-    every = np.concatenate([np.empty(0, dtype=np.int64), *ends])
-    known, first = np.unique(every, return_index=True)
+    known, first, which = np.unique(
+        packed(places[:, order]).T, return_index=True, return_inverse=True
+    )
+    # Those that are first seen as starts before the others: each of both follows a line.
     rank = np.empty(len(known), dtype=np.int64)
-    rank[np.argsort(first)] = np.arange(len(known))
-    ways = rank[np.searchsorted(known, packed(places[:, order]))]
+    rank[np.lexsort((first, first % 2))] = np.arange(len(known))
+    ways = rank[which.reshape(-1, 2).T]
     points = np.empty((len(known), 2), dtype=np.int64)
     points[ways] = places[:, order]
+    first_seen = np.zeros((len(order), 2), dtype=bool)
+    first_seen.reshape(-1)[first] = True
     numbered = {k: number[sequence] for k, sequence in zip(tracks, sequences, strict=True)}
-    return _Table(points, ways, lives[:, order], numbered)
+    return _Table(points, ways, first_seen.T, lives[:, order], numbered)
 
 
 def _gathered(tracks: list[GridTrack]) -> tuple[Numbers, Floats, list[Numbers]]:
@@ -164,25 +182,27 @@ def _tracks(tracks: list[GridTrack], table: _Table, moments: Floats) -> list[dic
     unseen = 0
     found = []
     for place, track in enumerate(tracks):
-        told: dict[str, Any] = {"rings": np.diff(track.offsets).tolist()}
+        entry: dict[str, Any] = {"rings": np.diff(track.offsets).tolist()}
         if track.life != (0.0, 1.0):
-            told["life"] = np.searchsorted(moments, track.life).tolist()
+            entry["life"] = np.searchsorted(moments, track.life).tolist()
         sequence = table.sequences.get(track, np.empty(0, dtype=np.int64))
         if track in table.sequences:
             base = _likeliest(last[sequence])
-            told["nodes"] = script(sequence, sequence[:0], unseen)
+            written = script(sequence, sequence[:0], unseen)
             if base != NOBODY:
                 copied = script(sequence, sequences[base], unseen)
-                if len(copied) < len(told["nodes"]):
-                    told |= {"base": place - base, "nodes": copied}
+                if len(copied) < len(written):
+                    written = copied
+                    entry["base"] = place - base
+            entry["nodes"] = told(written)
             last[sequence] = place
             unseen = max(unseen, int(sequence.max(initial=NOBODY)) + 1)
         else:
-            told |= {"times": track.times, "places": _differences(track.vertices)}
+            entry |= {"times": track.times, "places": _differences(track.vertices)}
         if track.seams.any():
-            told["seams"] = _lengths(track.seams)
+            entry["seams"] = _lengths(track.seams)
         sequences.append(sequence)
-        found.append(told)
+        found.append(entry)
     return found
 
 
@@ -236,7 +256,7 @@ def _lengths(values: NDArray[np.uint8]) -> list[int]:
     return pairs
 
 
-def _differences(vertices: Numbers) -> list[list[int]]:
+def _differences(vertices: Numbers) -> list[str]:
     """Positions at the first key time, then displacements; both as differences along the rings."""
     moves = np.diff(vertices, axis=0, prepend=0)
-    return [of.ravel().tolist() for of in np.diff(moves, axis=1, prepend=0)]
+    return [told(of) for of in np.diff(moves, axis=1, prepend=0)]

@@ -5,6 +5,7 @@ The timeline is a row of spans: a rest at each step, a transition between each t
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,28 +13,32 @@ from geotween.data.load import Scene
 from geotween.data.problems import Problem, Severity
 from geotween.export.bundle import Member, shapes_of
 from geotween.export.easing import EASINGS, Spline
+from geotween.export.furniture.furniture import NO_FURNITURE, Furniture, furniture
 from geotween.export.page_grid import GridTrack, Page, fit_page, on_grid, resting
 from geotween.export.paint import GHOST, Paint, Painter
 from geotween.export.shapes import DRAWN_IN_ORDER, Group, Shape, Slot
 from geotween.export.timeline import Span, timeline
 from geotween.motion.morph import Morph
+from geotween.scene.values import Time
 
 
 @dataclass(frozen=True, eq=False)
 class Scenery:
-    """A static layer under the regions."""
+    """A static layer under the regions, or above them."""
 
     name: str
     opacity: float
     paint: Paint
     tracks: tuple[GridTrack, ...]
+    above: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class Keyframes:
     """A whole map: its page, its static layers, and the shapes of each span.
 
-    ``layers`` are those that move, the lowest first; a ghost lies above them.
+    ``times`` are those of the steps, as ISO texts where they are dates. ``layers`` are those that
+    move, the lowest first; a ghost lies above them.
     """
 
     page: Page
@@ -46,6 +51,9 @@ class Keyframes:
     captions: tuple[str, ...]
     spans: tuple[tuple[Span, tuple[Shape, ...]], ...]
     problems: tuple[Problem, ...] = ()
+    times: tuple[str | float | None, ...] = ()
+    lang: str = "en"
+    furniture: Furniture = NO_FURNITURE
 
     @property
     def duration(self) -> int:
@@ -89,7 +97,7 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
     everyone = (i for step in scene.steps for i in step.regions.identities)
     painter = Painter(model.style, everyone, scene.layer_order)
     rests = [resting(step.regions, page) for step in scene.steps]
-    spans = []
+    spans, moving = [], []
     for span in timeline(scene):
         if span.rest:
             identities = scene.steps[span.step].regions.identities
@@ -107,12 +115,14 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
                 slot = Slot(Group("ghost", (1.0, 1.0)), "ghost", "")
                 shapes.append(Shape(slot, tuple(rests[span.step]), (GHOST, GHOST)))
         spans.append((span, tuple(shapes)))
+        moving.append(members)
     scenery = tuple(
         Scenery(
             layer.name,
             layer.opacity,
             Paint(layer.fill, layer.stroke, layer.width),
             tuple(resting(polygons, page)),
+            layer.above,
         )
         for layer, polygons in scene.layers
     )
@@ -127,7 +137,15 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
         tuple(step.caption for step in scene.steps),
         tuple(spans),
         tuple(p for s, r in zip(scene.steps, rests, strict=True) for p in _too_small(s.label, r)),
+        tuple(_plain(step.time) for step in scene.steps),
+        model.lang,
+        furniture(scene, page, painter, [span for span, _ in spans], moving),
     )
+
+
+def _plain(time: Time | None) -> str | float | None:
+    """A time as a page is told it: a date as ISO text, a number as it is."""
+    return time.isoformat() if isinstance(time, datetime.date) else time
 
 
 def _too_small(label: str, tracks: list[GridTrack]) -> list[Problem]:

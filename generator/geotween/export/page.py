@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -12,6 +13,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from geotween.export.coded import coded, differences
+from geotween.export.furniture.language import direction, words_in
+from geotween.export.furniture.multiples import multiples
 from geotween.export.keyframes import Keyframes
 from geotween.export.page_grid import GRID
 from geotween.export.paint import Paint
@@ -20,21 +23,40 @@ from geotween.export.shapes import Shape
 from geotween.export.svg import still_svg
 from geotween.scene.model import SceneFile
 
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 
 
-def page(frames: Keyframes, model: SceneFile, *, svg_href: str, index_href: str) -> str:
-    """The page of a scene; it asks the network for nothing."""
+def page(
+    frames: Keyframes,
+    model: SceneFile,
+    *,
+    svg_href: str,
+    index_href: str,
+    alternative: Sequence[str] = (),
+    alts: Sequence[str] = (),
+) -> str:
+    """The page of a scene; it asks the network for nothing.
+
+    ``alternative`` says in sentences what happens, ``alts`` what does so at each step.
+    """
+    stills = zip(frames.labels, frames.captions, multiples(frames, model.title), strict=True)
     return render(
         "page.html.j2",
         lang=model.lang,
+        dir=direction(model.lang),
         title=model.title,
         subtitle=model.subtitle,
         description=model.description,
         source=model.source,
         credit=model.credit,
         figure=Markup(still_svg(frames, model.title)),
-        keyframes=Markup(_island(keyframes_json(frames))),
+        legend=frames.furniture.legend,
+        keyframes=Markup(_island(keyframes_json(frames, alts))),
+        small_multiples=[
+            {"label": label, "caption": caption, "figure": Markup(figure)}
+            for label, caption, figure in stills
+        ],
+        alternative=alternative,
         svg_href=svg_href,
         index_href=index_href,
     )
@@ -56,7 +78,7 @@ def render(template: str, **context: Any) -> str:
     )
 
 
-def keyframes_json(frames: Keyframes) -> dict[str, Any]:
+def keyframes_json(frames: Keyframes, alts: Sequence[str] = ()) -> dict[str, Any]:
     """Keyframes as plain values; each track and paint once, vertices as differences."""
     slots = {slot: place for place, slot in enumerate(frames.slots())}
     found = dict.fromkeys(slot.group for slot in slots)
@@ -92,9 +114,40 @@ def keyframes_json(frames: Keyframes) -> dict[str, Any]:
         "loop": frames.loop,
         "easing": frames.easing,
         "steps": [
-            {"label": label, "caption": caption, "start": r.start / 1000, "end": r.end / 1000}
-            for label, caption, r in zip(frames.labels, frames.captions, frames.rests, strict=True)
+            {
+                "label": label,
+                "caption": caption,
+                "start": rest.start / 1000,
+                "end": rest.end / 1000,
+                "time": time,
+                "alt": alt,
+            }
+            for label, caption, rest, time, alt in zip(
+                frames.labels,
+                frames.captions,
+                frames.rests,
+                frames.times,
+                alts or [""] * len(frames.labels),
+                strict=True,
+            )
         ],
+        "labels": [
+            {
+                "text": label.text,
+                "key": label.key,
+                "room": round(label.room, 2),
+                "spans": {
+                    str(span): [[round(t, 5), round(x, 1), round(y, 1)] for t, x, y in way]
+                    for span, way in label.spans.items()
+                },
+            }
+            for label in frames.furniture.labels
+        ],
+        "tips": [
+            {key: {"name": tip.name, "rows": tip.rows} for key, tip in of_step.items()}
+            for of_step in frames.furniture.tips
+        ],
+        "words": words_in(frames.lang),
         "paints": [
             {"fill": p.fill, "stroke": p.stroke, "width": p.width, "dash": p.dash} for p in paints
         ],

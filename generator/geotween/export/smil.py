@@ -8,10 +8,10 @@ animation writes a value twice.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from svgwrite.animate import Animate
+from svgwrite.animate import Animate, AnimateTransform
 from svgwrite.base import BaseElement
 
 from geotween.export.easing import Spline, segments, share_at
@@ -156,6 +156,33 @@ def show(element: BaseElement, times: Sequence[tuple[float, float]], frames: Key
     moments = [t / frames.duration for t in changes]
     animation = _timed("visibility", moments, list(changes.values()), frames)
     animation.attribs["calcMode"] = "discrete"
+    element.add(animation)
+
+
+def follow(
+    element: BaseElement,
+    ways: Mapping[int, Sequence[tuple[float, float, float]]],
+    frames: Keyframes,
+) -> None:
+    """Move an element along ways, (t, x, y) in px for spans by number; it is hidden in others."""
+    times, values, splines = [0.0], [""], list[Spline | None]()
+    for number, way in sorted(ways.items()):
+        span = frames.spans[number][0]
+        parts = segments(frames.easing, [t for t, *_ in way])
+        shares = [0.0, *(end for _, end, _ in parts)]
+        times += [(span.start + share * span.length) / frames.duration for share in shares]
+        values += [f"{px(round(x, 1))} {px(round(y, 1))}" for _, x, y in way]
+        splines += [None, *(spline for *_, spline in parts)]
+    values[0] = values[1]
+    show(element, [(frames.spans[n][0].start, frames.spans[n][0].end) for n in ways], frames)
+    element.attribs["transform"] = f"translate({values[0]})"
+    if len(set(values)) == 1:
+        return
+    animation = AnimateTransform("translate", debug=False)
+    plain = _timed("transform", [*times, 1.0], [*values, values[-1]], frames)
+    animation.attribs.update(plain.attribs)
+    if any(splines):
+        _bend(animation, [*splines, None])
     element.add(animation)
 
 

@@ -9,15 +9,26 @@ import svgwrite
 from svgwrite.base import BaseElement
 
 from geotween.export.elements import SvgPath, paint_attributes, path_element, px
+from geotween.export.furniture.draw import (
+    at_rest,
+    draw_callout,
+    draw_graticule,
+    draw_labels,
+    draw_scale_bar,
+)
+from geotween.export.furniture.labels import Label
 from geotween.export.keyframes import Keyframes
 from geotween.export.paths import closed_path, path_texts
 from geotween.export.shapes import Group, Slot
-from geotween.export.smil import animated, fade
-from geotween.export.words import Words, write_words
+from geotween.export.smil import animated, fade, follow, show
+from geotween.export.words import Words, step_times, write_words
 
 
 def still_svg(frames: Keyframes, title: str, step: int = 0, around: Words | None = None) -> str:
-    """The map at rest at one step; without words, but with the room for them if asked."""
+    """The map at rest at one step; without words, but with the room for them if asked.
+
+    It has all furniture of the map; what other steps show is hidden.
+    """
     drawing = _drawing(frames, around)
     drawing.attribs["class"] = "figure"
     drawing.attribs["role"] = "img"
@@ -30,6 +41,18 @@ def still_svg(frames: Keyframes, title: str, step: int = 0, around: Words | None
         shape = resting[slot]
         group.add(path_element(slot, shape.paints[0], path_texts(shape)[0][1]))
     drawing.add(stage)
+    _scenery(drawing, frames, above=True)
+    furniture = frames.furniture
+    if furniture.scale_bar is not None and around is None:
+        drawing.add(draw_scale_bar(drawing, furniture.scale_bar))
+    if furniture.labels:
+        span = next(n for n, (s, _) in enumerate(frames.spans) if s.rest and s.step == step)
+        drawing.add(draw_labels(drawing, furniture.labels, at_rest(span)))
+    for callout in furniture.callouts:
+        element = draw_callout(drawing, callout, frames.lang)
+        if step not in callout.steps:
+            element.attribs["visibility"] = "hidden"
+        drawing.add(element)
     return str(drawing.tostring())
 
 
@@ -37,6 +60,7 @@ def animated_svg(frames: Keyframes, title: str, description: str, around: Words)
     """The whole map, playing by SMIL alone."""
     drawing = _drawing(frames, around)
     drawing.set_desc(title=title, desc=description or None)
+    drawing.attribs["lang"] = frames.lang
     drawing.attribs["data-steps"] = json.dumps(
         [
             {"label": label, "start": rest.start / 1000, "end": rest.end / 1000}
@@ -55,6 +79,19 @@ def animated_svg(frames: Keyframes, title: str, description: str, around: Words)
         for element in elements:
             groups[slot].add(element)
     drawing.add(stage)
+    _scenery(drawing, frames, above=True)
+    if frames.furniture.labels:
+
+        def moved(text: BaseElement, label: Label) -> bool:
+            follow(text, label.spans, frames)
+            return True
+
+        drawing.add(draw_labels(drawing, frames.furniture.labels, moved))
+    seen = [times for _, times in step_times(frames)]
+    for callout in frames.furniture.callouts:
+        element = draw_callout(drawing, callout, frames.lang)
+        show(element, [seen[step] for step in callout.steps], frames)
+        drawing.add(element)
     write_words(drawing, frames, around)
     return str(drawing.tostring())
 
@@ -70,7 +107,17 @@ def _drawing(frames: Keyframes, around: Words | None) -> svgwrite.Drawing:
         size = (px(width), px(whole))
         ground = drawing.rect((0, px(-header)), size, fill=frames.background, class_="background")
         drawing.add(ground)
+    _scenery(drawing, frames, above=False)
+    if frames.furniture.graticule:
+        drawing.add(draw_graticule(frames.furniture.graticule))
+    return drawing
+
+
+def _scenery(drawing: svgwrite.Drawing, frames: Keyframes, *, above: bool) -> None:
+    """The static layers under the regions, or those above them."""
     for layer in frames.scenery:
+        if layer.above != above:
+            continue
         group = drawing.g(class_="layer static")
         group.attribs["data-layer"] = layer.name
         group.attribs.update(paint_attributes(layer.paint))
@@ -78,7 +125,6 @@ def _drawing(frames: Keyframes, around: Words | None) -> svgwrite.Drawing:
             group.attribs["opacity"] = px(layer.opacity)
         group.add(SvgPath("scenery", closed_path(layer.tracks)))
         drawing.add(group)
-    return drawing
 
 
 def _groups(

@@ -1,4 +1,4 @@
-"""The words of an SVG: title and step label above the map, source below it."""
+"""The words of an SVG: title and step label above the map; legend, scale bar and source below."""
 
 from __future__ import annotations
 
@@ -9,65 +9,133 @@ import svgwrite
 from svgwrite.base import BaseElement
 
 from geotween.export.elements import px
+from geotween.export.furniture.draw import draw_bar
+from geotween.export.furniture.language import direction
+from geotween.export.furniture.legend import Entry
+from geotween.export.furniture.scale_bar import SIZE as BAR_SIZE
+from geotween.export.furniture.text import FONT, LEADING, LETTER, text_width
 from geotween.export.keyframes import Keyframes
 from geotween.export.smil import show
 
 MARGIN = 16  # px beside the words
 TITLE, LABEL, SOURCE = 18.0, 16.0, 11.0  # px, the sizes of the words above and below the map
-LEADING = 1.4  # lines in sizes of their font
 BOLD = 1.1  # the width of bold letters to that of others
-LETTER = 0.56  # the width of a letter in sizes of its font; generous, as the font is the reader's
-_FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+ENTRY = 12.0  # px, the size of the legend's words
+SWATCH, BESIDE, BETWEEN = 12.0, 6.0, 18.0  # px: a colour's square, the way to its words, and on
+ROW = 20.0  # px, the height of a row of the legend, and of the scale bar
 
 
 @dataclass(frozen=True)
 class Words:
-    """What the SVG says above and below the map, in lines that fit its width."""
+    """What the SVG says above and below the map, in lines that fit its width.
+
+    ``entries`` are those of the legend, each with the place of its square: px from where lines
+    begin, and the row.
+    """
 
     title: tuple[str, ...]
     source: tuple[str, ...]
+    entries: tuple[tuple[Entry, float, int], ...] = ()
+    scale_bar: bool = False
 
     @property
     def header(self) -> float:
         return round(len(self.title) * TITLE * LEADING + LABEL * LEADING + MARGIN)
 
     @property
+    def key(self) -> float:
+        """The height of legend and scale bar."""
+        rows = 1 + self.entries[-1][2] if self.entries else 0
+        rows += self.scale_bar
+        return rows * ROW + (MARGIN / 2 if rows else 0)
+
+    @property
     def footer(self) -> float:
-        return round(len(self.source) * SOURCE * LEADING + MARGIN) if self.source else 0
+        below = len(self.source) * SOURCE * LEADING
+        return round(self.key + below + (MARGIN if self.source or self.key else 0))
 
 
 def words(frames: Keyframes, title: str, source: str) -> Words:
-    """A title and a source in lines."""
+    """Title, source and legend in lines."""
     room = frames.page.width - 2 * MARGIN
     return Words(
         tuple(textwrap.wrap(title, max(1, int(room / (LETTER * TITLE * BOLD))))),
         tuple(textwrap.wrap(source, max(1, int(room / (LETTER * SOURCE))))),
+        _flowed(frames.furniture.legend, room),
+        frames.furniture.scale_bar is not None,
     )
 
 
+def _flowed(entries: tuple[Entry, ...], room: float) -> tuple[tuple[Entry, float, int], ...]:
+    """Entries in rows, as many in each as it has room for."""
+    found: list[tuple[Entry, float, int]] = []
+    left, row = 0.0, 0
+    for entry in entries:
+        width = SWATCH + BESIDE + text_width(entry.label, ENTRY)
+        if left and left + width > room:
+            left, row = 0.0, row + 1
+        found.append((entry, left, row))
+        left += width + BETWEEN
+    return tuple(found)
+
+
 def write_words(drawing: svgwrite.Drawing, frames: Keyframes, around: Words) -> None:
-    """Title and step label above the map, source below it."""
-    group = drawing.g(class_="words", fill=_ink(frames.background))
-    group.attribs["font-family"] = _FONT
+    """Title and step label above the map, legend, scale bar and source below it."""
+    ink = _ink(frames.background)
+    way = direction(frames.lang)
+    line_start = MARGIN if way == "ltr" else frames.page.width - MARGIN
+    group = drawing.g(class_="words", fill=ink)
+    group.attribs |= {"font-family": FONT, "direction": way}
     top = -around.header + MARGIN / 2 + TITLE * (1 - LEADING)
     for line in around.title:
         top += TITLE * LEADING
-        group.add(_text(drawing, line, top, TITLE, weight="700"))
+        group.add(_text(drawing, line, line_start, top, TITLE, weight="700"))
     room = frames.page.width - 2 * MARGIN
-    for label, times in _labels(frames):
+    for label, times in step_times(frames):
         size = max(SOURCE / 2, min(LABEL, room / (LETTER * max(len(label), 1))))
-        text = _text(drawing, label, -MARGIN / 2 - LABEL * (LEADING - 1), size)
+        text = _text(drawing, label, line_start, -MARGIN / 2 - LABEL * (LEADING - 1), size)
         text.attribs["class"] = "step"
         show(text, [times], frames)
         group.add(text)
-    top = frames.page.height
+    _write_legend(drawing, group, frames, around, ink)
+    top = frames.page.height + around.key
     for line in around.source:
         top += SOURCE * LEADING
-        group.add(_text(drawing, line, top, SOURCE))
+        group.add(_text(drawing, line, line_start, top, SOURCE))
     drawing.add(group)
 
 
-def _labels(frames: Keyframes) -> list[tuple[str, tuple[int, int]]]:
+def _write_legend(
+    drawing: svgwrite.Drawing, group: BaseElement, frames: Keyframes, around: Words, ink: str
+) -> None:
+    """The rows of the legend, and the scale bar in a row of its own."""
+    mirrored = direction(frames.lang) == "rtl"
+    width, top = frames.page.width, frames.page.height + MARGIN / 2
+    key = group.add(drawing.g(class_="legend"))
+    for entry, left, row in around.entries:
+        middle = top + (row + 0.5) * ROW
+        x = MARGIN + left
+        words_at = x + SWATCH + BESIDE
+        if mirrored:
+            x, words_at = width - x - SWATCH, width - words_at
+        square = drawing.rect(
+            (px(round(x, 1)), px(round(middle - SWATCH / 2, 1))), (px(SWATCH), px(SWATCH))
+        )
+        stroke = ink if entry.fill == entry.stroke == "none" else entry.stroke
+        square.attribs |= {"fill": entry.fill, "stroke": stroke}
+        key.add(square)
+        key.add(_text(drawing, entry.label, words_at, middle + ENTRY * 0.36, ENTRY))
+    bar = frames.furniture.scale_bar
+    if bar is not None:
+        bottom = frames.page.height + around.key - 4
+        left = width - MARGIN - bar.width if mirrored else MARGIN
+        scale = group.add(drawing.g(class_="scale-bar"))
+        draw_bar(scale, bar, left, bottom, ink, None)
+        beside = left - BESIDE if mirrored else left + bar.width + BESIDE
+        scale.add(_text(drawing, bar.words, beside, bottom, BAR_SIZE))
+
+
+def step_times(frames: Keyframes) -> list[tuple[str, tuple[int, int]]]:
     """Each step's label and when it is seen: from half-way before to half-way after."""
     halves = [(span.start + span.end) // 2 for span, _ in frames.spans if not span.rest]
     end = frames.duration if frames.loop else frames.duration + 1
@@ -78,9 +146,9 @@ def _labels(frames: Keyframes) -> list[tuple[str, tuple[int, int]]]:
 
 
 def _text(
-    drawing: svgwrite.Drawing, line: str, y: float, size: float, weight: str = ""
+    drawing: svgwrite.Drawing, line: str, x: float, y: float, size: float, weight: str = ""
 ) -> BaseElement:
-    text = drawing.text(line, insert=(px(MARGIN), px(round(y, 1))))
+    text = drawing.text(line, insert=(px(round(x, 1)), px(round(y, 1))))
     text.attribs["font-size"] = px(round(size, 1))
     if weight:
         text.attribs["font-weight"] = weight

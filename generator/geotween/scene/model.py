@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
 
 from geotween.scene.values import (
     Colour,
+    Graticule,
+    Legend,
+    Offset,
     Pixels,
+    Place,
     Polygons,
     Positive,
     Seconds,
@@ -17,6 +21,7 @@ from geotween.scene.values import (
     StepTime,
     Text,
     Threshold,
+    Tooltip,
     Transition,
 )
 
@@ -115,7 +120,7 @@ class Style(StyleRule):
 
 
 class Layer(_Part):
-    """Static shapes under the regions."""
+    """Static shapes under the regions, or above them."""
 
     name: Text = ""
     polygons: Polygons
@@ -123,6 +128,20 @@ class Layer(_Part):
     stroke: Colour = "none"
     width: Pixels = 0.75
     opacity: Share = 1.0
+    above: bool = Field(False, description="drawn over the regions, not under them")
+
+
+class Annotation(_Part):
+    """Words at a place of the map, with a line that leads there."""
+
+    text: Text
+    at: Place
+    steps: tuple[Text, ...] | None = Field(
+        None, description="labels of the steps that show it; all unless given", min_length=1
+    )
+    offset: Offset | None = Field(
+        None, description="px from the place to the words, right and down; found unless given"
+    )
 
 
 class Map(_Part):
@@ -159,6 +178,30 @@ class Map(_Part):
         (), description="the order that classes are drawn in, the lowest first"
     )
     layers: tuple[Layer, ...] = ()
+    labels: Text = Field(
+        "auto",
+        description="on regions: none, names, keys, or a column; auto: names, where they are few",
+    )
+    legend: Legend = Field(
+        "auto",
+        description="auto: classes and static layers with names; none; or words for each of some",
+    )
+    unit: Literal["m", "km"] | None = Field(
+        None, description="of planar coordinates, where nothing else tells how long they are"
+    )
+    scale_bar: Annotated[
+        Literal["auto", "true", "false"], WithJsonSchema({"enum": ["auto", True, False]})
+    ] = Field(
+        "auto",
+        description="auto: where lengths are known and the scale is nearly the same all over",
+    )
+    graticule: Graticule = Field(
+        "none", description="meridians and parallels: auto, none, or the degrees between them"
+    )
+    annotations: tuple[Annotation, ...] = ()
+    tooltip: Tooltip = Field(
+        "auto", description="below a region's name: auto (class and columns), none, or the columns"
+    )
 
     @model_validator(mode="after")
     def _room_for_the_data(self) -> Self:
@@ -219,6 +262,16 @@ class Timing(_Part):
     speed: Speed = 1.0
 
 
+class Story(_Part):
+    """How captions and the text alternative speak of what happens."""
+
+    noun: Text | None = Field(None, description="what one of the things is called: fire")
+    nouns: Text | None = Field(None, description="what several are called: fires")
+    words: Text | None = Field(
+        None, description="a .yaml file of other wording; see docs/events.md"
+    )
+
+
 class Step(_Part):
     """The polygon set at one time."""
 
@@ -242,6 +295,7 @@ class SceneFile(_Part):
     style: Style = Style()
     motion: Motion = Motion()
     timing: Timing = Timing()
+    story: Story = Story()
     data: Annotated[Data, BeforeValidator(_file_alone)] | None = None
     hotspots: Hotspots | None = None
     steps: tuple[Step, ...] = Field(

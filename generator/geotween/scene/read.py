@@ -41,7 +41,7 @@ _EXAMPLES = {
 Model = TypeVar("Model", bound=BaseModel)
 
 # Where else a key may belong, and what other tools call ours.
-_PARTS = ("steps", "data", "hotspots", "map", "style", "motion", "timing")
+_PARTS = ("steps", "data", "hotspots", "map", "style", "motion", "timing", "story")
 _SYNONYMS = {"color": "fill", "colour": "fill", "fill-opacity": "opacity", "stroke-width": "width"}
 
 _TIME: TypeAdapter[Any] = TypeAdapter(StepTime)

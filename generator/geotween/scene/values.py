@@ -18,6 +18,7 @@ _MONTH = re.compile(r"\d{4}-\d{2}")
 SHORTEST, LONGEST = 0.05, 3600  # seconds of a transition: a frame or two, and an hour
 # Beyond it, double precision no longer tells whole numbers apart.
 LARGEST_TIME = 1e15
+FINEST_GRATICULE = 0.001  # degrees between two meridians: a hundred metres
 COARSEST = 100.0  # px of simplification: beyond it hardly a shape is left
 # What XML cannot hold, or UTF-8 cannot write.
 UNWRITABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
@@ -118,6 +119,54 @@ def _threshold(value: Any) -> float | str:
     return text if share else number
 
 
+def _legend(value: Any) -> str | dict[str, str]:
+    if value in ("auto", "none"):
+        return str(value)
+    if isinstance(value, dict) and all(isinstance(words, str) for words in value.values()):
+        return {_text(name): _text(words) for name, words in value.items()}
+    raise ValueError(
+        "expected auto, none, or words for some classes, keys or layers, such as {burnt: Burnt}"
+    )
+
+
+def _graticule(value: Any) -> str | float:
+    if value in ("auto", "none"):
+        return str(value)
+    try:
+        degrees = float(value)
+    except (TypeError, ValueError):
+        degrees = 0.0
+    if not FINEST_GRATICULE <= degrees <= 90:
+        raise ValueError(f"expected auto, none, or degrees from {FINEST_GRATICULE:g} to 90")
+    return degrees
+
+
+def _tooltip(value: Any) -> str | tuple[str, ...]:
+    if value in ("auto", "none"):
+        return str(value)
+    if isinstance(value, list) and all(isinstance(column, str) for column in value):
+        return tuple(map(_text, value))
+    raise ValueError("expected auto, none, or a list of columns, such as [area, owner]")
+
+
+def _place(value: Any) -> tuple[float, float]:
+    return _pair(value, "a place [x, y], or [longitude, latitude]")
+
+
+def _offset(value: Any) -> tuple[float, float]:
+    return _pair(value, "px to the right and down, such as [30, -20]")
+
+
+def _pair(value: Any, meant: str) -> tuple[float, float]:
+    try:
+        x, y = map(float, value)
+    except (TypeError, ValueError):
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise ValueError(f"expected {meant}")
+    return x, y
+
+
 Text = Annotated[str, AfterValidator(_text), WithJsonSchema({"type": _SCALAR})]
 Colour = Annotated[
     str,
@@ -163,6 +212,40 @@ Threshold = Annotated[
         {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string", "pattern": "%$"}]}
     ),
 ]
+Legend = Annotated[
+    str | dict[str, str],
+    PlainValidator(_legend),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": ["auto", "none"]},
+                {"type": "object", "additionalProperties": {"type": _SCALAR}},
+            ]
+        }
+    ),
+]
+Graticule = Annotated[
+    str | float,
+    PlainValidator(_graticule),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": ["auto", "none"]},
+                {"type": "number", "minimum": FINEST_GRATICULE, "maximum": 90},
+            ]
+        }
+    ),
+]
+Tooltip = Annotated[
+    str | tuple[str, ...],
+    PlainValidator(_tooltip),
+    WithJsonSchema(
+        {"anyOf": [{"enum": ["auto", "none"]}, {"type": "array", "items": {"type": _SCALAR}}]}
+    ),
+]
+_PAIR = WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2})
+Place = Annotated[tuple[float, float], PlainValidator(_place), _PAIR]
+Offset = Annotated[tuple[float, float], PlainValidator(_offset), _PAIR]
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 Polygons = Annotated[

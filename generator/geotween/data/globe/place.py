@@ -31,13 +31,17 @@ _PROJECTION: Location = ("map", "projection")
 class Placed:
     """The features of each source in the map's plane, and how they came there.
 
-    ``metres`` is the length of a unit of that plane, None where it is unknown.
+    ``metres`` is the length of a unit of that plane, None where it is unknown. ``plane`` is its
+    system and ``written`` that of coordinates in the scene: with ``fit: each`` as for the step
+    whose frame is the map's, None where nothing tells.
     """
 
     features: list[list[Feature]]
     words: str
     metres: float | None = None
     problems: tuple[Problem, ...] = ()
+    plane: CRS | None = None
+    written: CRS | None = None
 
 
 def crs_of_all(document: Document, frame: Map, sources: Sequence[Held]) -> list[CRS | None]:
@@ -109,7 +113,7 @@ def place(
         own = apart and owners[i] < steps
         groups.setdefault(owners[i] if own else leader if apart else 0, []).append(i)
     problems = _told_apart(sources, systems, first)
-    words, metres = [], set()
+    words, metres, plane = [], set(), None
     for owner, group in groups.items():
         deciding = [i for i in group if not apart or owners[i] == owner]
         chosen = _projection(document, frame, sources, systems, shapes, deciding, first)
@@ -117,6 +121,8 @@ def place(
             shapes[i] = placed
         words.append("" if frame.projection == "none" else chosen.words)
         metres.add(_metres(chosen.crs))
+        if not apart or owner == leader:
+            plane = chosen.crs
     if frame.y == "down" and frame.projection != "none" and first.is_geographic:
         message = '"y: down" turns projected data upside down'
         problems.append(Problem("upside down", "warning", message, hint="leave it out"))
@@ -125,6 +131,8 @@ def place(
         "; ".join(dict.fromkeys(filter(None, words))),
         metres.pop() if len(metres) == 1 and not apart else None,
         tuple(problems),
+        plane,
+        first,
     )
 
 

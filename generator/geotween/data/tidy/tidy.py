@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import shapely
@@ -26,9 +27,13 @@ SHOWN = 8  # steps listed in a message
 
 @dataclass(frozen=True, eq=False)
 class Tidied:
-    """The features of each step and of each static layer, and the layers that move, in order."""
+    """The features of each step and of each static layer, and the layers that move, in order.
+
+    ``exact`` are the steps' features before they were simplified, for measures.
+    """
 
     steps: list[list[Feature]]
+    exact: list[list[Feature]]
     static: list[list[Feature]]
     layers: tuple[str, ...]
     problems: list[Problem]
@@ -65,13 +70,11 @@ def tidy(
     ground = [_apart(geometries_of(features)) for features in static]
     beneath = [shapes for of_layer in ground for shapes in of_layer]
     simple = simplify([*sets, *beneath], frame.simplify / scale)
-    moving = [with_geometries(part, shapes) for part, shapes in zip(parts, simple, strict=False)]
+    steps_of = partial(_steps, parts, len(layers))
     rest = iter(simple[len(sets) :])
     return Tidied(
-        [
-            [feature for part in moving[i : i + len(layers)] for feature in part]
-            for i in range(0, len(moving), len(layers))
-        ],
+        steps_of(simple[: len(sets)]),
+        steps_of(sets),
         [
             with_geometries(
                 features, np.concatenate([np.empty(0, object), *(next(rest) for _ in shapes)])
@@ -81,6 +84,17 @@ def tidy(
         layers,
         problems,
     )
+
+
+def _steps(
+    parts: Sequence[list[Feature]], layers: int, sets: Sequence[Shapes]
+) -> list[list[Feature]]:
+    """The features of each step, in other shapes, from those of each step and layer."""
+    new = [with_geometries(part, shapes) for part, shapes in zip(parts, sets, strict=True)]
+    return [
+        [feature for part in new[i : i + layers] for feature in part]
+        for i in range(0, len(new), layers)
+    ]
 
 
 def _disjoint(
