@@ -22,7 +22,7 @@ def unkeyed(*polygons: Polygon) -> PolygonSet:
 
 
 def division(origin: list[Polygon], target: list[Polygon]) -> Division:
-    return divide(correspond(unkeyed(*origin), unkeyed(*target)))
+    return divide(correspond(unkeyed(*origin), unkeyed(*target)), "voronoi")
 
 
 def assert_partition(polygon: Polygon, pieces: list[Polygon]) -> None:

@@ -190,7 +190,7 @@ def test_each_stage_can_be_named_on_its_own() -> None:
     assert resolve("auto", matching="rotation").retries == ()
     assert resolve("auto", matching="trajectory").matching == "trajectory"
     assert resolve("paper", correspondence="key").correspondence == "key"
-    with pytest.raises(ValueError, match="unknown division 'scissors'; expected one of voronoi"):
+    with pytest.raises(ValueError, match="unknown division 'scissors'; expected one of advancing"):
         resolve("paper", division="scissors")
 
 

@@ -49,7 +49,7 @@ class Techniques:
 
 _PAPER = Techniques("paper", "intersects", "voronoi", "rotation", births="centroid")
 _MORPH = Techniques(
-    MORPH, "auto", "voronoi", "trajectory", retries=("rotation", "intrinsic", FRONT)
+    MORPH, "auto", "territory", "trajectory", retries=("rotation", "intrinsic", FRONT)
 )
 
 METHODS: Mapping[str, Techniques] = {

@@ -27,6 +27,8 @@ from geotween.scene.values import (
 
 Easing = Literal["linear", "ease", "ease-in", "ease-out", "ease-in-out"]
 Period = Literal["year", "quarter", "month", "week", "day", "hour"]
+ADDRESS = r"^https?://[^\s<>\"']+$"
+Address = Annotated[str, Field(pattern=ADDRESS, max_length=2000)]
 Speed = Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)]
 
 
@@ -233,7 +235,9 @@ class Motion(_Part):
     radius: Positive | None = Field(
         None, description="of correspondence: within, in units of the map"
     )
-    division: Literal["voronoi"] | None = None
+    division: Literal["territory", "voronoi", "advancing-front", "quadtree"] | None = Field(
+        None, description="what cuts a polygon for its correspondents; territory: their own areas"
+    )
     matching: Literal["rotation", "trajectory"] | None = None
     path: Literal["straight", "rigid", "intrinsic"] | None = Field(
         None, description="the way of matched vertices: rigid turns shapes, intrinsic unrolls them"
@@ -290,6 +294,12 @@ class SceneFile(_Part):
     description: Text = Field("", description="text alternative: what the map shows, in words")
     source: Text = ""
     credit: Text = ""
+    layout: Literal["player", "scroll"] = Field(
+        "player", description="scroll: the map stays in sight and plays as captions pass by it"
+    )
+    url: Address | None = Field(
+        None, description="of the folder where the page will stand; for social cards and oEmbed"
+    )
     lang: Annotated[str, Field(pattern=r"^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$")] = "en"
     map: Map = Map()
     style: Style = Style()

@@ -17,21 +17,29 @@ from shapely.geometry import Polygon
 from geotween.data.polygons import PolygonSet
 from geotween.data.problems import Problem
 from geotween.motion.correspond import Correspondence
-from geotween.motion.divide.voronoi import Mend
+from geotween.motion.divide.faces import Piece, array_of
+from geotween.motion.divide.meshed import advancing_front, quadtree
+from geotween.motion.divide.partition import Mend
+from geotween.motion.divide.territory import territory as by_territory
 from geotween.motion.divide.voronoi import voronoi as by_voronoi
 from geotween.motion.innermost import innermost
 
 NOBODY = -1  # the index of a partner that does not exist: a birth's origin, a death's target
 
 # A polygon and its correspondents in; one piece for each of them, in their order, out.
-Technique = Callable[[Polygon, Sequence[Polygon]], tuple[list[Polygon], list[Mend]]]
+Technique = Callable[[Polygon, Sequence[Polygon]], tuple[list[Piece], list[Mend]]]
 
-TECHNIQUES: Mapping[str, Technique] = {"voronoi": by_voronoi}
+TECHNIQUES: Mapping[str, Technique] = {
+    "territory": by_territory,
+    "voronoi": by_voronoi,
+    "advancing-front": advancing_front,
+    "quadtree": quadtree,
+}
 
 _MENDS = {
     "coincident seeds": "two Voronoi seeds coincided; the later took its next-nearest vertex",
-    "cell in parts": "parts of a Voronoi cell went to the neighbour with the longest common seam",
-    "empty cell": "a Voronoi cell was empty and was cut from a neighbour",
+    "cell in parts": "parts of a piece went to the neighbour with the longest common seam",
+    "empty cell": "nothing was nearest to a correspondent; its piece was cut from a neighbour's",
 }
 
 
@@ -53,7 +61,7 @@ class Division:
 
 
 def divide(
-    correspondence: Correspondence, technique: str = "voronoi", births: str = "innermost"
+    correspondence: Correspondence, technique: str = "territory", births: str = "innermost"
 ) -> Division:
     """Cut every polygon that has several correspondents; pair the pieces.
 
@@ -113,7 +121,7 @@ def _cut_all(
     own: PolygonSet, others: PolygonSet, partners: list[NDArray[np.intp]], cut: Technique
 ) -> tuple[NDArray[np.object_], list[Problem]]:
     """The pieces of all polygons that have partners, in order, and the mends as problems."""
-    pieces: list[Polygon] = []
+    pieces: list[Piece] = []
     problems: list[Problem] = []
     for polygon, identity, mates in zip(own.polygons, own.identities, partners, strict=True):
         if len(mates) < 2:
@@ -126,6 +134,4 @@ def _cut_all(
             problems.append(
                 Problem(mend.kind, "note", _MENDS[mend.kind], (), piece, mend.share, "of the area")
             )
-    found = np.empty(len(pieces), dtype=object)
-    found[:] = pieces
-    return found, problems
+    return array_of(pieces), problems
