@@ -1,12 +1,13 @@
 # make demo   build the gallery of example maps into public/
 # make test   lint, types, tests, pages in a real browser
 # make prove  longer proofs than make test has time for
-# make bench  speed beside flubber (needs Node)
+# make bench  speed, memory and size, beside peers and floors; writes docs/benchmarks (needs Node)
+# make experiments   the paper's experiments beside ours; writes docs/experiments
 
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test lint prove bench schema golden figures clean
+.PHONY: demo test lint prove bench schema golden figures experiments clean
 
 demo: .venv/.package
 	$(BIN)/geotween build scenes/*.yaml -o public
@@ -22,8 +23,8 @@ lint: .venv/.tests
 prove: .venv/.tests
 	HYPOTHESIS_PROFILE=prove $(BIN)/pytest -n auto tests --ignore tests/browser
 
-bench: .venv/.package benchmarks/node_modules
-	$(BIN)/python benchmarks/pair.py
+bench: .venv/.tests benchmarks/node_modules
+	$(BIN)/python -m benchmarks
 
 # What the code writes and the repository keeps; look at the difference before committing it.
 schema: .venv/.package
@@ -34,6 +35,10 @@ golden: .venv/.tests
 
 figures: .venv/.tests
 	$(BIN)/python -m docs.draw
+
+# With flubber where there is Node; without it the pages say so.
+experiments: .venv/.package $(if $(shell command -v npm),benchmarks/node_modules)
+	$(BIN)/python -m docs.draw.experiments
 
 .venv/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

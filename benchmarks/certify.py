@@ -14,10 +14,10 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field
 
 import shapely
-from pair import FLUBBER, _ask, _flubber, _verdict
-from shapes import Outline, outline_pair
 
 import geotween
+from benchmarks.pair import FLUBBER, _ask, _flubber, _verdict
+from benchmarks.shapes import Outline, outline_pair
 
 COUNTS = (1_000, 10_000, 20_000)
 MATCHINGS = ("rotation", "trajectory")

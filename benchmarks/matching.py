@@ -15,8 +15,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
-from shapes import Outline, outline_pair
 
+from benchmarks.shapes import Outline, outline_pair
 from geotween.motion.match import points_at, rotation
 from geotween.motion.trajectory import trajectory
 

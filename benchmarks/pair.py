@@ -21,9 +21,9 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from shapes import Outline, outline_pair
 
 import geotween
+from benchmarks.shapes import Outline, outline_pair
 
 BESIDE_FLUBBER = (1_000, 2_000, 5_000, 10_000, 20_000)
 ALONE = (50_000, 100_000)  # flubber's time grows with the square

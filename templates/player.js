@@ -10,7 +10,7 @@ const ICONS = {
   loop: "M7 7h10v3l4-4-4-4v3H5v6h2zM17 17H7v-3l-4 4 4 4v-3h12v-6h-2z",
 };
 const SPEEDS = [0.5, 1, 2, 4];
-const LABEL = 13, LEGIBLE = 8; // px of the map, and of the screen
+const LEGIBLE = 8; // px of the screen
 
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const mix = (a, b, t) => a + (b - a) * t;
@@ -22,7 +22,7 @@ function summed(differences, stride = 1) {
   return values;
 }
 
-// Numbers as text: the last digit of each is one of 64, those before it of 26 that begin at 1.
+// From here to decode: the reading of what docs/format.md tells.
 function numbers(text) {
   const found = [];
   for (let i = 0, high = 0; i < text.length; i++) {
@@ -35,7 +35,6 @@ function numbers(text) {
   return Int32Array.from(found);
 }
 
-// Vertices that tracks share: from which point to which each goes, and when.
 function decodeVertices({ points, starts, ways, jumps, moments, lives }) {
   const codes = numbers(ways), leaps = numbers(jumps), spells = numbers(lives), count = codes.length;
   const from = new Int32Array(count), to = new Int32Array(count);
@@ -63,7 +62,6 @@ function decodeVertices({ points, starts, ways, jumps, moments, lives }) {
   return { points: summed(numbers(points), 2), from, to, since, until };
 }
 
-// A track's vertices by number: by turns copies from a track before it, and runs.
 function decodeNodes(track, base, unseen) {
   const nodes = [], script = numbers(track.nodes);
   let place = 0, node = unseen;
@@ -80,7 +78,6 @@ function decodeNodes(track, base, unseen) {
   return Int32Array.from(nodes);
 }
 
-// A track's own vertices at each of its key times: displacements undone once.
 function decodeFrames(places) {
   const frames = [];
   for (const differences of places) {
@@ -90,7 +87,6 @@ function decodeFrames(places) {
   return frames;
 }
 
-// The seams of a track's edges, one code for each.
 function decodeSeams({ rings, seams = [] }) {
   const codes = new Uint8Array(rings.reduce((sum, count) => sum + count, 0));
   for (let i = 0, edge = 0; i < seams.length; edge += seams[i + 1], i += 2) {
@@ -328,7 +324,6 @@ class Pen {
   }
 }
 
-// All that a frame needs is made once.
 class Picture {
   #frame = 0;
   #pen;
@@ -346,13 +341,13 @@ class Picture {
       element, steps: element.dataset.steps.split(" ").map(Number) }));
     const labels = figure.querySelector("g.labels");
     labels?.replaceChildren();
-    this.labels = data.labels.map(({ text, key, room, spans }) => {
+    this.labels = data.labels.map(({ text, key, size, room, spans }) => {
       const element = make("text", {
         class: "label", "data-key": key, "font-weight": 600,
         "text-anchor": "middle", "dominant-baseline": "middle" }, text);
       labels.append(element);
       const way = (places) => [0, 1, 2].map((k) => places.map((place) => place[k]));
-      return { element, room, ways: data.spans.map((_, i) => spans[i] && way(spans[i])) };
+      return { element, size, room, ways: data.spans.map((_, i) => spans[i] && way(spans[i])) };
     });
     stage.replaceChildren(...this.groups);
   }
@@ -360,10 +355,10 @@ class Picture {
   // On a small map labels grow to be read, or give way.
   fit() {
     const scale = this.figure.getScreenCTM()?.a || 1;
-    for (const { element, room = 1 } of this.labels) {
-      const size = LABEL * clamp(1 / scale, 1, room);
-      put(element, "font-size", size);
-      put(element, "display", size * scale < LEGIBLE ? "none" : null);
+    for (const { element, size, room } of this.labels) {
+      const drawn = size * clamp(1 / scale, 1, room);
+      put(element, "font-size", drawn);
+      put(element, "display", drawn * scale < LEGIBLE ? "none" : null);
     }
     for (const { element, size } of this.words) put(element, "font-size", Math.max(size, LEGIBLE / scale));
   }
@@ -669,11 +664,13 @@ class Tips {
     const tip = this.#tip(key);
     this.#key = tip ? key : null;
     if (live) this.element.setAttribute("aria-live", live);
-    const row = ([label, value]) => [make("dt", {}, label), make("dd", {}, value)];
+    const rows = tip?.rows.flatMap(([label, value]) => [make("dt", {}, label), make("dd", {}, value)]);
     this.element.replaceChildren(...(tip ? [make("strong", {}, tip.name)] : []),
-      ...(tip?.rows.length ? [make("dl", {}, ...tip.rows.flatMap(row))] : []));
+      ...(rows?.length ? [make("dl", {}, ...rows)] : []));
     for (const region of this.figure.querySelectorAll("path.region")) {
-      region.classList.toggle("here", tip !== undefined && region.dataset.key === key);
+      const here = tip !== undefined && region.dataset.key === key;
+      region.classList.toggle("here", here);
+      put(region, "vector-effect", here ? "non-scaling-stroke" : null);
     }
   }
 

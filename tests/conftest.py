@@ -13,6 +13,8 @@ settings.register_profile("default", deadline=None, derandomize=True)
 settings.register_profile("prove", deadline=None, max_examples=2000)  # make prove
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
+os.environ["GEOTWEEN_CACHE"] = ""  # tests plan anew, and keep nothing
+
 WriteScene = Callable[..., Path]
 
 # Two steps, each a square of side 4; the second one lies 1 to the right.

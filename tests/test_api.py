@@ -23,7 +23,7 @@ ORIGIN, TARGET = box(0, 0, 4, 4), box(1, 0, 5, 4)
 def test_names() -> None:
     assert geotween.__all__ == [
         "BuildReport", "Certificate", "Frame", "Morph", "PiecePair", "Problem", "Scene",
-        "SceneError", "Track", "build", "load", "morph",
+        "SceneError", "Track", "animate", "build", "divide", "load", "mesh", "morph",
     ]  # fmt: skip
     assert all(hasattr(geotween, name) for name in geotween.__all__)
 
@@ -84,8 +84,8 @@ def test_build_reports_problems(write_scene: WriteScene, tmp_path: Path) -> None
 
 
 def test_build_of_an_unknown_format_writes_nothing(write_scene: WriteScene, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="unknown format 'pdf'; expected html or svg"):
-        geotween.build(geotween.load(write_scene()), tmp_path / "out", ["html", "pdf"])
+    with pytest.raises(ValueError, match="unknown format 'doc'; expected html or svg"):
+        geotween.build(geotween.load(write_scene()), tmp_path / "out", ["html", "doc"])
     assert not (tmp_path / "out").exists()
 
 

@@ -17,6 +17,7 @@ from tests.conftest import SCENE, WriteScene
 
 BOW_TIE = SCENE.replace("[4, 0], [4, 4]", "[4, 4], [4, 0]")
 SPIKE = SCENE.replace("[4, 4], [0, 4]", "[4, 4], [4, 4], [0, 4]")
+WRITTEN = ["embed.js", "index.html", "scene.embed.txt", "scene.html", "scene.svg"]
 WARNING = "warning: 1, polygon 1: invalid polygon (self-intersection at 2, 2), repaired"
 
 
@@ -69,7 +70,7 @@ def test_schema_is_json() -> None:
         (["build", "-o", "out"], "Missing argument 'SCENE...'"),
         (["build", "scene.yaml"], "Missing option '-o'"),
         (
-            ["build", "scene.yaml", "-o", "out", "--format", "html,pdf"],
+            ["build", "scene.yaml", "-o", "out", "--format", "html,docx"],
             "expected some of html, svg",
         ),
         (["build", "scene.yaml", "-o", "out", "--format", ","], "expected some of html, svg"),
@@ -90,8 +91,8 @@ def test_build_writes_page_svg_and_index(write_scene: WriteScene, tmp_path: Path
     out = tmp_path / "deep" / "out"
     result = run("build", write_scene(name="lake.yaml"), "-o", out)
     assert result.exit_code == 0
-    assert files(out) == ["index.html", "lake.html", "lake.svg"]
-    assert (out / "lake.html").read_text(encoding="utf-8").startswith("<!doctype html>")
+    assert files(out) == ["embed.js", "index.html", "lake.embed.txt", "lake.html", "lake.svg"]
+    assert (out / "lake.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     assert (out / "lake.svg").read_text(encoding="utf-8").rstrip().endswith("</svg>")
     assert 'href="lake.html"' in (out / "index.html").read_text(encoding="utf-8")
     assert result.stdout.splitlines()[0].startswith("lake: 1 transition, 1 piece → ")
@@ -105,6 +106,8 @@ def test_build_writes_page_svg_and_index(write_scene: WriteScene, tmp_path: Path
         ("html", ["index.html", "scene.html"]),
         ("svg", ["index.html", "scene.svg"]),
         (" svg , html,", ["index.html", "scene.html", "scene.svg"]),
+        ("html,embed", ["embed.js", "index.html", "scene.embed.txt", "scene.html"]),
+        ("fragment,html", ["index.html", "scene.fragment.html", "scene.html"]),
     ],
 )
 def test_build_writes_the_formats_that_are_wanted(
@@ -113,20 +116,22 @@ def test_build_writes_the_formats_that_are_wanted(
     out = tmp_path / "out"
     assert run("build", write_scene(), "-o", out, "--format", formats).exit_code == 0
     assert files(out) == written
-    assert f'href="{written[1]}"' in (out / "index.html").read_text(encoding="utf-8")
+    shown = "scene.html" if "html" in formats else "scene.svg"
+    assert f'href="{shown}"' in (out / "index.html").read_text(encoding="utf-8")
 
 
 def test_quiet_build_prints_nothing(write_scene: WriteScene, tmp_path: Path) -> None:
     result = run("build", write_scene(BOW_TIE), "-o", tmp_path / "out", "-q")
     assert (result.exit_code, result.output) == (0, "")
-    assert files(tmp_path / "out") == ["index.html", "scene.html", "scene.svg"]
+    assert files(tmp_path / "out") == WRITTEN
 
 
 def test_several_scenes_have_one_index(write_scene: WriteScene, tmp_path: Path) -> None:
     out = tmp_path / "out"
     result = run("build", write_scene(name="a.yaml"), write_scene(name="b.yml"), "-o", out)
     assert result.exit_code == 0
-    assert files(out) == ["a.html", "a.svg", "b.html", "b.svg", "index.html"]
+    scenes = [name for name in files(out) if name.startswith(("a.", "b."))]
+    assert scenes == ["a.embed.txt", "a.html", "a.svg", "b.embed.txt", "b.html", "b.svg"]
     index = (out / "index.html").read_text(encoding="utf-8")
     assert index.index('href="a.html"') < index.index('href="b.html"')
 
@@ -242,7 +247,7 @@ def test_same_scene_gives_the_same_bytes(write_scene: WriteScene, tmp_path: Path
         out = tmp_path / str(number)
         assert process("build", path, "-o", out, "-q", **environment).returncode == 0
         built.append({name: (out / name).read_bytes() for name in files(out)})
-    assert sorted(built[0]) == ["index.html", "scene.html", "scene.svg"]
+    assert sorted(built[0]) == WRITTEN
     assert built[0] == built[1] == built[2]
 
 
@@ -301,8 +306,8 @@ def test_rebuilt_files_take_the_place_of_the_old_ones(
     out = tmp_path / "out"
     assert run("build", write_scene(), "-o", out).exit_code == 0
     assert run("build", write_scene(SCENE.replace("Two", "Other")), "-o", out).exit_code == 0
-    assert files(out) == ["index.html", "scene.html", "scene.svg"]
-    for name in files(out):
+    assert files(out) == WRITTEN
+    for name in files(out)[1:]:
         text = (out / name).read_text(encoding="utf-8")
         assert "Other squares" in text
         assert "Two squares" not in text

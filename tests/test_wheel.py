@@ -55,16 +55,16 @@ def test_wheel_holds_every_shipped_file(python: Path, tmp_path: Path, name: str)
         print(resource({name!r}))"""
     found = Path(run(python, "-I", "-c", code, cwd=tmp_path).strip())
     assert found.is_relative_to(python.parents[1])
-    for path in (CHECKOUT / name).iterdir():
+    for path in (CHECKOUT / name).rglob("*"):
         if path.is_file():
-            assert (found / path.name).read_bytes() == path.read_bytes()
+            assert (found / path.relative_to(CHECKOUT / name)).read_bytes() == path.read_bytes()
 
 
 def test_wheel_builds_a_scene_that_it_ships(python: Path, tmp_path: Path) -> None:
     (scene,) = python.parents[1].glob("lib/*/site-packages/geotween/scenes/archipelago.yaml")
     run(python, "-I", "-m", "geotween", "build", scene, "-o", "out", cwd=tmp_path)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
-        "archipelago.html", "archipelago.svg", "index.html",
+        "archipelago.embed.txt", "archipelago.html", "archipelago.svg", "embed.js", "index.html",
     ]  # fmt: skip
     assert "Maui Nui" in (tmp_path / "out" / "archipelago.html").read_text(encoding="utf-8")
 

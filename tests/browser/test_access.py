@@ -9,7 +9,7 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page
 
 from geotween.export.resources import resource
-from tests.browser import drawn
+from tests.browser import drawn, hosts
 
 PAGES = [*sorted(path.stem for path in resource("scenes").glob("*.yaml")), "index"]
 WIDTHS = (320, 1280)
@@ -31,6 +31,29 @@ def test_axe_finds_nothing(
             show_a_tip(page)
             found = Axe().run(page)
             assert found.violations_count == 0, found.generate_report()
+
+
+@pytest.mark.parametrize("kind", ["scroll", "fragment"])
+@pytest.mark.parametrize("colours", ["light", "dark"])
+@pytest.mark.parametrize("motion", ["no-preference", "reduce"])
+def test_axe_finds_nothing_in_stories_and_fragments(
+    tmp_path: Path, browser: Browser, kind: str, colours: str, motion: str
+) -> None:
+    layout = "scroll" if kind == "scroll" else "player"
+    folder = hosts.build(tmp_path, "--fragment", scene=f"layout: {layout}\n{hosts.SCENE}")
+    file = folder / "squares.html"
+    if kind == "fragment":
+        fragment = (folder / "squares.fragment.html").read_text(encoding="utf-8")
+        file = hosts.host(folder, fragment)
+    for width in WIDTHS:
+        options = {"color_scheme": colours, "reduced_motion": motion}
+        viewport = {"width": width, "height": 800}
+        with drawn.open_page(browser, file, viewport=viewport, **options) as page:
+            page.evaluate(f"{MAP}.pause()")
+            show_a_tip(page)
+            found = Axe().run(page)
+            assert found.violations_count == 0, found.generate_report()
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 def show_a_tip(page: Page) -> None:

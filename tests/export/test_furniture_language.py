@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import pytest
 
 from geotween.export.furniture.language import direction, words_in
@@ -16,11 +18,14 @@ def test_direction_follows_the_script_then_the_language(lang: str, way: str) -> 
     assert direction(lang) == way
 
 
-def test_german_has_all_words_and_other_languages_english_ones() -> None:
-    english, german = words_in("en"), words_in("de-AT")
+@pytest.mark.parametrize("of", ["map", "page", "player"])
+def test_german_has_all_words_and_other_languages_english_ones(
+    of: Literal["map", "page", "player"],
+) -> None:
+    english, german = words_in("en", of), words_in("de-AT", of)
     assert english.keys() == german.keys()
-    assert all(english[w] != german[w] for w in ("play", "next", "loop", "place", "legend"))
-    assert words_in("tlh") == english
+    assert all(english[word] != german[word] for word in english)
+    assert words_in("tlh", of) == english
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,12 +23,14 @@ from geotween.data.polygons import (
 )
 from geotween.data.problems import Problem, condensed, in_kilometres
 from geotween.data.read.sources import Held, SourceReader
+from geotween.data.read.tables import Table
 from geotween.data.steps.series import Member
 from geotween.data.steps.steps import members_of, place_of
 from geotween.data.tidy.identity import TwoClassesError, merge_keys
 from geotween.data.tidy.nodes import noded_features
 from geotween.data.tidy.tidy import tidy
 from geotween.data.tidy.valid import mended, valid_features
+from geotween.displayed import Displayed
 from geotween.scene.document import Document, read_text
 from geotween.scene.errors import SceneError
 from geotween.scene.model import Layer, SceneFile
@@ -55,7 +57,7 @@ class Step:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Displayed):
     """A scene ready to be planned: its model, its steps and what was mended in them.
 
     ``layers`` are the static shapes underneath or above, each with its polygons; ``layer_order``
@@ -81,25 +83,50 @@ class Scene:
         return iter(self.steps)
 
 
-def load(path: str | os.PathLike[str], sandbox: str | os.PathLike[str] | None = None) -> Scene:
+def load(
+    path: str | os.PathLike[str],
+    sandbox: str | os.PathLike[str] | None = None,
+    *,
+    reads: set[Path] | None = None,
+) -> Scene:
     """Read a scene file and all that it names.
 
-    With a ``sandbox`` the scene may name files in that folder only.
+    With a ``sandbox`` the scene may name files in that folder only. ``reads`` gets the files and
+    folders that were looked at, those before an error too.
 
     Raises
     ------
     SceneError
         With every fault of the scene and of the files it names.
     """
-    name = str(path)
-    file = Path(path)
+    name, file = str(path), Path(path)
+    if reads is not None:
+        reads.add(file)
     document = Document(name, file, read_text(file, name))
+    return read(document, None if sandbox is None else Path(sandbox), reads=reads)
+
+
+def read(
+    document: Document,
+    sandbox: Path | None = None,
+    *,
+    tables: Mapping[str, Table] | None = None,
+    reads: set[Path] | None = None,
+) -> Scene:
+    """The scene that a text tells; ``tables`` are in memory what it names as if they were files.
+
+    Raises
+    ------
+    SceneError
+        With every fault of the scene and of the files it names.
+    """
+    file = document.path
     if UNWRITABLE.search(file.stem):
         shown = file.stem.encode(errors="replace").decode()
         hint = "rename it: pages are called as their scene"
         raise SceneError([document.fault((), f"the file name {shown} cannot be written", hint)])
     model, values, faults = read_scene(document)
-    reader = SourceReader(document, None if sandbox is None else Path(sandbox))
+    reader = SourceReader(document, sandbox, tables, reads)
     if model is None:
         reader.members(values, "steps")
     members = members_of(reader, model, values) if model else []
@@ -119,6 +146,7 @@ def _words(reader: SourceReader, model: SceneFile) -> Document | None:
     path = None if name is None else reader.path(name, at)
     if name is None or path is None:
         return None
+    reader.reads.add(path)
     try:
         return Document(name, path, read_text(path, name, named_by=reader.document.fault(at, "")))
     except SceneError as error:

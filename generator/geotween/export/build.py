@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import quote
 
@@ -14,34 +15,30 @@ from markupsafe import Markup
 
 from geotween.data.load import Scene
 from geotween.data.problems import Problem
-from geotween.export.furniture.language import words_in
+from geotween.export.between import BETWEEN
+from geotween.export.cache import default_cache
+from geotween.export.furniture.language import direction, words_in
+from geotween.export.interchange import INTERCHANGE_FORMATS, interchange_files
+from geotween.export.jobs import plan_scenes
 from geotween.export.keyframes import Keyframes, keyframes
-from geotween.export.page import page, render
+from geotween.export.page import inline
+from geotween.export.pages import PAGE_FORMATS, height_in_frame, page_files, shared_files
+from geotween.export.pictures.formats import PICTURE_FORMATS, Pictures, picture_files
+from geotween.export.pictures.picture import Shown
+from geotween.export.plans import Plan, tasks_of
+from geotween.export.reports import TransitionReport, problems_of, transition_reports
+from geotween.export.site import Site, render
 from geotween.export.svg import animated_svg, still_svg
 from geotween.export.words import words
-from geotween.motion.measure import measure
 from geotween.motion.morph import Morph, plan
-from geotween.motion.techniques import resolve
-from geotween.scene.model import Motion
+from geotween.scene.model import SceneFile
 from geotween.story.captions import told
 
 FORMATS = ("html", "svg")
+KNOWN_FORMATS = tuple(
+    dict.fromkeys([*FORMATS, *PAGE_FORMATS, *INTERCHANGE_FORMATS, *PICTURE_FORMATS])
+)
 INDEX = "index.html"
-
-
-@dataclass(frozen=True)
-class TransitionReport:
-    """What happened between two steps: their labels, the pieces that moved, and measures.
-
-    ``valid`` tells whether it was proved that polygons cross nowhere on the way; ``ways`` how many
-    pieces of each layer were moved in which way.
-    """
-
-    steps: tuple[str, str]
-    pieces: int
-    valid: bool
-    ways: Mapping[str, Mapping[str, int]]
-    measures: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -73,10 +70,15 @@ class Card:
 
 @dataclass(frozen=True)
 class Rendered:
-    """A scene's files before they are written, by name."""
+    """A scene's files before they are written, by name.
+
+    ``size`` is that of the map, ``height`` what its page takes in a frame of the usual width (px).
+    """
 
     name: str
     files: Mapping[str, bytes]
+    size: tuple[float, float]
+    height: int
     card: Card
     transitions: tuple[TransitionReport, ...]
     projection: str
@@ -84,9 +86,31 @@ class Rendered:
 
 
 def build(
-    scene: Scene, out_dir: str | os.PathLike[str], formats: Iterable[str] = FORMATS
+    scene: Scene,
+    out_dir: str | os.PathLike[str],
+    formats: Iterable[str] = FORMATS,
+    *,
+    jobs: int = 1,
+    cache: bool = True,
+    executor: Executor | None = None,
+    site: Site | None = None,
 ) -> BuildReport:
     """Write a scene as ``<name>.html`` and ``<name>.svg`` into a folder.
+
+    The files are the same however they are made.
+
+    Parameters
+    ----------
+    jobs
+        In how many processes transitions are planned; more than one need the calling script to be
+        guarded by ``if __name__ == "__main__"``.
+    cache
+        Whether plans are looked up, and kept, in the user's cache (GEOTWEEN_CACHE).
+    executor
+        Plans the transitions instead: any ``concurrent.futures.Executor``, such as
+        ``Client.get_executor()`` of dask.distributed, whose workers have geotween, too.
+    site
+        The site that the page is for: its address, its own templates.
 
     Raises
     ------
@@ -95,111 +119,103 @@ def build(
     OSError
         Where the folder cannot be written to; nothing is written then.
     """
-    folder = writable(out_dir)
-    rendered = render_scene(scene, formats)
-    return report(rendered, write(folder, rendered.files))
+    folder, wanted = writable(out_dir), known_formats(formats)
+    kept = default_cache() if cache else None
+    (plans,) = plan_scenes([scene], jobs=jobs, cache=kept, executor=executor)
+    rendered = render_scene(scene, wanted, plans=plans, site=site)
+    shared = shared_files(wanted, site or Site())
+    files = write(folder, {**rendered.files, **shared})
+    return report(rendered, files[: len(rendered.files)])
 
 
 def plan_scene(scene: Scene) -> tuple[list[Morph], list[Problem]]:
-    """The motion of each transition, and all problems with their steps named."""
-    motion = scene.model.motion
-    techniques = resolve(
-        motion.method,
-        motion.correspondence,
-        motion.division,
-        motion.matching,
-        motion.path,
-        motion.radius,
-        motion.annexation,
-        _exceptions(motion),
-    )
-    morphs, problems = [], list(scene.problems)
-    for before, after in zip(scene.steps[:-1], scene.steps[1:], strict=True):
-        planned = plan(before.regions, after.regions, techniques)
-        morphs.append(planned)
-        problems += [
-            replace(p, steps=(before.label, after.label)) for p in planned.certificate.problems
-        ]
-    return morphs, problems
-
-
-def _exceptions(motion: Motion) -> dict[tuple[str, str], str]:
-    """The methods that a scene names for layers, classes and keys."""
-    rules = {"layer": motion.by_layer, "class": motion.by_class, "key": motion.by_key}
-    return {
-        (what, name): rule.method for what, those in rules.items() for name, rule in those.items()
-    }
-
-
-def transition_reports(
-    scene: Scene, morphs: Sequence[Morph], *, in_frames: bool = False
-) -> tuple[TransitionReport, ...]:
-    """What is proved and measured of each transition; ``in_frames`` looks at 201 frames, too."""
-    reports = []
-    for before, after, m in zip(scene.steps[:-1], scene.steps[1:], morphs, strict=True):
-        certificate = m.certificate
-        measures = dict(certificate.measures)
-        if in_frames:
-            found = asdict(measure(m.tracks, before.regions, after.regions))
-            measures |= {name.replace("_", " "): value for name, value in found.items()}
-        steps = (before.label, after.label)
-        reports.append(
-            TransitionReport(steps, len(m.tracks), certificate.valid, certificate.ways, measures)
-        )
-    return tuple(reports)
+    """The motion of each transition with all that is behind it, and the problems of all."""
+    morphs = [plan(t.origin, t.target, t.techniques) for t in tasks_of(scene)]
+    return morphs, problems_of(scene, morphs)
 
 
 def render_scene(
-    scene: Scene, formats: Iterable[str] = FORMATS, *, index_href: str = ""
+    scene: Scene,
+    formats: Iterable[str] = FORMATS,
+    *,
+    index_href: str = "",
+    plans: Sequence[Plan | Morph] | None = None,
+    site: Site | None = None,
+    between: int = BETWEEN,
+    pictures: Pictures | None = None,
 ) -> Rendered:
-    """Plan a scene and render it; nothing is written."""
-    wanted = list(formats)
-    unknown = sorted(set(wanted) - set(FORMATS))
-    if unknown:
-        raise ValueError(f"unknown format {unknown[0]!r}; expected {' or '.join(FORMATS)}")
-    morphs, problems = plan_scene(scene)
+    """Render a scene, planned first unless it is; nothing is written.
+
+    ``between`` is the number of frames between two steps where frames are told as GeoJSON.
+    """
+    wanted = known_formats(formats)
+    if plans is None:
+        (plans,) = plan_scenes([scene])
+    problems = problems_of(scene, plans)
     model, happened = scene.model, told(scene)
-    frames = _captioned(keyframes(scene, morphs), happened)
+    frames = _captioned(keyframes(scene, plans), happened)
     svg_name, page_name = f"{scene.name}.svg", f"{scene.name}.html"
     svg_link = quote(svg_name) if "svg" in wanted else ""
-    files: dict[str, bytes] = {}
-    if "html" in wanted:
-        # What a caption says already is not said again.
-        alts = [
-            "" if text == caption else text
-            for text, caption in zip(happened, frames.captions, strict=True)
-        ]
-        text = page(
-            frames,
-            model,
-            svg_href=svg_link,
-            index_href=index_href,
-            alternative=happened,
-            alts=alts,
-        )
-        files[page_name] = text.encode()
-    named = words_in(model.lang)["source"].format(source=model.source) if model.source else ""
-    origins = [named, model.credit]
-    source = " · ".join(filter(None, origins))
+    site = site or Site()
+    files = page_files(scene.name, frames, model, happened, wanted, site, index_href)
+    source = _source(model)
     description = model.description or model.subtitle
     around = words(frames, model.title, source) if "svg" in wanted else None
     if around:
         files[svg_name] = animated_svg(frames, model.title, description, around).encode()
+    files |= interchange_files(scene, frames, plans, wanted, between)
+    pictured, met = picture_files(
+        scene.name,
+        Shown(frames, model.title, source),
+        wanted,
+        pictures or Pictures(),
+        shown_step(scene),
+    )
+    files |= pictured
+    opened = next((name for name in (page_name, svg_name, *files) if name in files), "")
     card = Card(
         model.title,
         description,
-        quote(page_name if "html" in wanted else svg_name),
+        quote(opened),
         svg_link,
-        Markup(still_svg(frames, model.title, _shown_step(scene), around)),
+        inline(still_svg(frames, model.title, shown_step(scene), around)),
     )
     return Rendered(
         scene.name,
         files,
+        (frames.page.width, frames.page.height),
+        height_in_frame(frames, model, happened),
         card,
-        transition_reports(scene, morphs),
+        transition_reports(scene, plans),
         scene.projection,
-        (*problems, *frames.problems),
+        (*problems, *frames.problems, *met),
     )
+
+
+def shown_scene(scene: Scene, plans: Sequence[Plan | Morph]) -> Shown:
+    """A planned scene as it goes into pictures."""
+    return Shown(keyframes(scene, plans), scene.model.title, _source(scene.model))
+
+
+def _source(model: SceneFile) -> str:
+    """Where a map comes from, in one line."""
+    named = words_in(model.lang)["source"].format(source=model.source) if model.source else ""
+    return " · ".join(filter(None, [named, model.credit]))
+
+
+def known_formats(formats: Iterable[str]) -> list[str]:
+    """Formats by name, if all of them are known.
+
+    Raises
+    ------
+    ValueError
+        Where one is not.
+    """
+    wanted = list(formats)
+    unknown = sorted(set(wanted) - set(KNOWN_FORMATS))
+    if unknown:
+        raise ValueError(f"unknown format {unknown[0]!r}; expected {' or '.join(KNOWN_FORMATS)}")
+    return wanted
 
 
 def _captioned(frames: Keyframes, happened: Sequence[str]) -> Keyframes:
@@ -208,16 +224,20 @@ def _captioned(frames: Keyframes, happened: Sequence[str]) -> Keyframes:
     return replace(frames, captions=(first[0], *(caption or text for caption, text in others)))
 
 
-def _shown_step(scene: Scene) -> int:
+def shown_step(scene: Scene) -> int:
     """The step for the still: the one nearest to the middle that has polygons."""
     middle = len(scene.steps) // 2
     full = [i for i, step in enumerate(scene.steps) if len(step.regions)]
     return min(full, key=lambda i: (abs(i - middle), i))
 
 
-def gallery(cards: Sequence[Card], title: str, lang: str = "en") -> bytes:
+def gallery(cards: Sequence[Card], title: str, lang: str = "en", site: Site | None = None) -> bytes:
     """A page that shows several maps."""
-    return render("index.html.j2", lang=lang, title=title, cards=cards).encode()
+    way = direction(lang)
+    text = render(
+        "index.html.j2", site or Site(), "index", lang=lang, dir=way, title=title, cards=cards
+    )
+    return text.encode()
 
 
 def report(rendered: Rendered, files: Sequence[Path]) -> BuildReport:

@@ -16,6 +16,7 @@ from geotween.export.easing import EASINGS, Spline
 from geotween.export.furniture.furniture import NO_FURNITURE, Furniture, furniture
 from geotween.export.page_grid import GridTrack, Page, fit_page, on_grid, resting
 from geotween.export.paint import GHOST, Paint, Painter
+from geotween.export.plans import Plan
 from geotween.export.shapes import DRAWN_IN_ORDER, Group, Shape, Slot
 from geotween.export.timeline import Span, timeline
 from geotween.motion.morph import Morph
@@ -90,7 +91,7 @@ class Keyframes:
         )
 
 
-def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
+def keyframes(scene: Scene, plans: Sequence[Plan | Morph]) -> Keyframes:
     """The keyframes of a scene whose transitions have been planned."""
     model = scene.model
     page = fit_page(model.map, [s.regions for s in scene.steps] + [s for _, s in scene.layers])
@@ -107,7 +108,7 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
             ]
             shapes = shapes_of(members, painter)
         else:
-            tracks = morphs[span.step].tracks
+            tracks = plans[span.step].tracks
             drawn = zip(tracks, on_grid(tracks, page), strict=True)
             members = [Member(t.identity, t.ends, track) for t, track in drawn]
             shapes = shapes_of(members, painter)
@@ -145,6 +146,8 @@ def keyframes(scene: Scene, morphs: Sequence[Morph]) -> Keyframes:
 
 def _plain(time: Time | None) -> str | float | None:
     """A time as a page is told it: a date as ISO text, a number as it is."""
+    if isinstance(time, datetime.datetime) and time.tzinfo is None:
+        return f"{time.isoformat()}Z"  # no reader's summer time shifts the axis
     return time.isoformat() if isinstance(time, datetime.date) else time
 
 

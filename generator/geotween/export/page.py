@@ -1,25 +1,23 @@
-"""A map as one HTML page: the first step as SVG, keyframes as JSON, and the player."""
+"""A map as one HTML page, or a fragment of one: still SVG, keyframes as JSON, and the player."""
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import json
-from collections.abc import Sequence
-from functools import cache
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from geotween.export.coded import coded, differences
+from geotween.export.furniture.labels import SIZE as LABEL_SIZE
 from geotween.export.furniture.language import direction, words_in
 from geotween.export.furniture.multiples import multiples
 from geotween.export.keyframes import Keyframes
 from geotween.export.page_grid import GRID
 from geotween.export.paint import Paint
-from geotween.export.resources import resource
 from geotween.export.shapes import Shape
+from geotween.export.site import Site, render
 from geotween.export.svg import still_svg
 from geotween.scene.model import SceneFile
 
@@ -30,52 +28,69 @@ def page(
     frames: Keyframes,
     model: SceneFile,
     *,
-    svg_href: str,
-    index_href: str,
+    svg_href: str = "",
+    index_href: str = "",
     alternative: Sequence[str] = (),
     alts: Sequence[str] = (),
+    social: Mapping[str, str] | None = None,
+    oembed_href: str = "",
+    site: Site | None = None,
+    fragment: bool = False,
 ) -> str:
     """The page of a scene; it asks the network for nothing.
 
-    ``alternative`` says in sentences what happens, ``alts`` what does so at each step.
+    Parameters
+    ----------
+    svg_href, index_href
+        What it links to, if anything.
+    alternative, alts
+        What happens in sentences, and what does so at each step.
+    social, oembed_href
+        Meta elements for social cards by name, and where the page's oEmbed is.
+    site
+        The site that the page belongs to.
+    fragment
+        The map alone, without head and body, for a site's own template.
+
+    Raises
+    ------
+    jinja2.TemplateError
+        Where a site's own template is wrong.
     """
     stills = zip(frames.labels, frames.captions, multiples(frames, model.title), strict=True)
     return render(
-        "page.html.j2",
+        "fragment.html.j2" if fragment else "page.html.j2",
+        site or Site(),
+        model.layout,
+        elsewhere=fragment,
         lang=model.lang,
         dir=direction(model.lang),
+        words=words_in(model.lang, "page"),
+        layout=model.layout,
         title=model.title,
         subtitle=model.subtitle,
         description=model.description,
         source=model.source,
         credit=model.credit,
-        figure=Markup(still_svg(frames, model.title)),
+        figure=inline(still_svg(frames, model.title)),
         legend=frames.furniture.legend,
         keyframes=Markup(_island(keyframes_json(frames, alts))),
-        small_multiples=[
-            {"label": label, "caption": caption, "figure": Markup(figure)}
+        steps=[
+            {"label": label, "caption": caption, "figure": inline(figure)}
             for label, caption, figure in stills
         ],
         alternative=alternative,
         svg_href=svg_href,
         index_href=index_href,
+        social=social or {},
+        oembed_href=oembed_href,
     )
 
 
-def render(template: str, **context: Any) -> str:
-    """A template with the player's style and script, and the hashes a policy admits them by."""
-    style, script = _text("player.css"), _text("player.js")
-    return (
-        _environment()
-        .get_template(template)
-        .render(
-            **context,
-            style=Markup(style),
-            script=Markup(script),
-            style_hash=_hash(style),
-            script_hash=_hash(script),
-        )
-    )
+def inline(svg: str) -> Markup:
+    """An SVG as a part of HTML, which knows namespaces without being told."""
+    root, end, rest = svg.partition(">")
+    return Markup(re.sub(r' (xmlns(:\w+)?|baseProfile|version)="[^"]*"', "", root) + end + rest)
 
 
 def keyframes_json(frames: Keyframes, alts: Sequence[str] = ()) -> dict[str, Any]:
@@ -135,6 +150,7 @@ def keyframes_json(frames: Keyframes, alts: Sequence[str] = ()) -> dict[str, Any
             {
                 "text": label.text,
                 "key": label.key,
+                "size": LABEL_SIZE,
                 "room": round(label.room, 2),
                 "spans": {
                     str(span): [[round(t, 5), round(x, 1), round(y, 1)] for t, x, y in way]
@@ -147,7 +163,7 @@ def keyframes_json(frames: Keyframes, alts: Sequence[str] = ()) -> dict[str, Any
             {key: {"name": tip.name, "rows": tip.rows} for key, tip in of_step.items()}
             for of_step in frames.furniture.tips
         ],
-        "words": words_in(frames.lang),
+        "words": words_in(frames.lang, "player"),
         "paints": [
             {"fill": p.fill, "stroke": p.stroke, "width": p.width, "dash": p.dash} for p in paints
         ],
@@ -163,24 +179,3 @@ def _island(value: object) -> str:
     """JSON that no text in it can end: inside a script element ``<`` is written as an escape."""
     text = json.dumps(value, separators=(",", ":"), ensure_ascii=False)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
-
-
-@cache
-def _environment() -> Environment:
-    return Environment(
-        loader=FileSystemLoader(resource("templates")),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-
-
-@cache
-def _text(name: str) -> str:
-    return (resource("templates") / name).read_text(encoding="utf-8")
-
-
-def _hash(text: str) -> str:
-    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

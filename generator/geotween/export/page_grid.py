@@ -91,13 +91,20 @@ class GridTrack:
 
     def at(self, t: float) -> NDArray[np.float64]:
         """The vertices (n, 2) at t, in steps of GRID; those without a film are rounded to it."""
+        places = self.between(t)
+        return places if self.film is not None else np.rint(places)
+
+    def between(self, t: float) -> NDArray[np.float64]:
+        """The vertices (n, 2) at t, in steps of GRID and parts of them."""
         if self.film is not None and self.nodes is not None:
             return self.film.at(self.nodes, t)
         if self.still:
             return np.asarray(self.vertices[0], dtype=np.float64)
-        flat = self.vertices.reshape(len(self.times), -1)
-        values = [np.interp(t, self.times, column) for column in flat.T]
-        return np.rint(np.reshape(values, (-1, 2)))
+        k = int(np.clip(np.searchsorted(self.times, t, side="right"), 1, len(self.times) - 1))
+        before, after = self.times[k - 1 : k + 1]
+        share = min(max((t - before) / (after - before), 0.0), 1.0) if after > before else 1.0
+        one, other = self.vertices[k - 1], self.vertices[k]
+        return np.asarray(one + (other - one) * share, dtype=np.float64)
 
 
 def fit_page(frame: Map, sets: Sequence[PolygonSet]) -> Page:

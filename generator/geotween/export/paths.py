@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +18,9 @@ from geotween.motion.rings import Offsets, next_vertex
 FINE = 0.01
 
 
+Line = tuple[NDArray[np.intp], bool]  # the numbers of its vertices, and whether it closes
+
+
 def path_texts(shape: Shape, life: tuple[float, float] = (0.0, 1.0)) -> list[tuple[float, str]]:
     """The path at each key time of a shape whose tracks are there for a time; one if it is still.
 
@@ -27,22 +30,37 @@ def path_texts(shape: Shape, life: tuple[float, float] = (0.0, 1.0)) -> list[tup
     if not all(track.still for track in shape.tracks):
         times |= {life[1], *(t for k in shape.tracks if not k.still for t in k.times)}
     unit = GRID if all(track.film is None for track in shape.tracks) else FINE
-    lines = [(track, list(_lines(shape, track))) for track in shape.tracks]
+    lines = _lines_of(shape, shape.tracks)
     return [
-        (t, "".join(_track_text(track, t, of_track, unit) for track, of_track in lines))
+        (t, _text(_points([track.at(t) for track in shape.tracks], unit), lines, unit))
         for t in sorted(times)
         if life[0] <= t <= life[1]
     ]
 
 
-def _track_text(
-    track: GridTrack, t: float, lines: list[tuple[NDArray[np.intp], bool]], unit: float
-) -> str:
-    points = np.rint(track.at(t) * (GRID / unit)).astype(np.int64)
-    return "".join(_text(points[line], closed, unit) for line, closed in lines)
+def path_at(shape: Shape, t: float) -> str:
+    """The path of a shape at t, after easing, of those tracks that are there then."""
+    there = [k for k in shape.tracks if k.life[0] <= t < k.life[1] or t == k.life[1] == 1]
+    points = _points([track.between(t) for track in there], FINE)
+    return _text(points, _lines_of(shape, there), FINE)
 
 
-def _lines(shape: Shape, track: GridTrack) -> Iterator[tuple[NDArray[np.intp], bool]]:
+def _points(places: Sequence[NDArray[np.float64]], unit: float) -> NDArray[np.int64]:
+    """Places of several tracks, in steps of GRID, as steps of a unit (n, 2)."""
+    every = np.concatenate([np.empty((0, 2)), *places])
+    return np.rint(every * (GRID / unit)).astype(np.int64)
+
+
+def _lines_of(shape: Shape, tracks: Iterable[GridTrack]) -> list[Line]:
+    """The lines that a shape draws of some tracks, whose vertices are numbered together."""
+    lines, first = list[Line](), 0
+    for track in tracks:
+        lines += [(first + line, closed) for line, closed in _lines(shape, track)]
+        first += track.vertices.shape[1]
+    return lines
+
+
+def _lines(shape: Shape, track: GridTrack) -> Iterator[Line]:
     """The vertex numbers of each line that a shape draws of a track, and whether it closes."""
     if shape.slot.kind == "border":
         yield from runs(track.seams == 0, track.offsets)
@@ -53,7 +71,7 @@ def _lines(shape: Shape, track: GridTrack) -> Iterator[tuple[NDArray[np.intp], b
             yield np.arange(start, end), True
 
 
-def runs(chosen: NDArray[np.bool_], offsets: Offsets) -> Iterator[tuple[NDArray[np.intp], bool]]:
+def runs(chosen: NDArray[np.bool_], offsets: Offsets) -> Iterator[Line]:
     """Lines along the chosen edges (edge k runs from vertex k to the next of its ring).
 
     A run goes on across its ring's last vertex; a ring chosen as a whole is one closed line.
@@ -74,28 +92,49 @@ def runs(chosen: NDArray[np.bool_], offsets: Offsets) -> Iterator[tuple[NDArray[
             yield np.append(edges, following[edges[-1]]), False
 
 
-def _text(points: NDArray[np.int64], closed: bool, unit: float) -> str:
-    steps = np.diff(points, axis=0)
-    start, way = _numbers(points[0], unit), _numbers(steps.ravel(), unit)
-    return f"M{start}l{way}{'z' if closed else ''}"
+def _text(points: NDArray[np.int64], lines: Sequence[Line], unit: float) -> str:
+    """Lines through some of the points (n, 2), each as its start and the steps from there."""
+    if not lines:
+        return ""
+    chosen = points[np.concatenate([line for line, _ in lines])]
+    ends = np.cumsum([len(line) for line, _ in lines])
+    starts = np.append(0, ends[:-1])
+    steps = np.diff(chosen, axis=0, prepend=0)
+    steps[starts] = chosen[starts]
+    number = _numbers(unit)
+    told = [number[value] for value in steps.ravel().tolist()]
+    for start, end, (_, closed) in zip(starts.tolist(), ends.tolist(), lines, strict=True):
+        told[2 * start] = f"M{told[2 * start].lstrip()}"
+        told[2 * start + 1] += "l"
+        if end - start > 1:
+            told[2 * start + 2] = told[2 * start + 2].lstrip()
+        if closed:
+            told[2 * end - 1] += "z"
+    return "".join(told)
 
 
-def _numbers(values: Iterable[int], unit: float) -> str:
-    """Steps of a unit as pixels; a minus sign separates, so that no space is needed before it."""
-    joined = " ".join(_number(int(v), unit) for v in values)
-    return joined.replace(" -", "-")
+class _Numbers(dict[int, str]):
+    """Steps of a unit as pixels, after a space; a minus sign separates, and needs none."""
+
+    def __init__(self, unit: float) -> None:
+        self.parts = round(1 / unit)
+
+    def __missing__(self, value: int) -> str:
+        text = f"{value / self.parts:.2f}".rstrip("0").removesuffix(".")
+        text = text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+        self[value] = text if text.startswith("-") else f" {text}"
+        return self[value]
 
 
-@lru_cache(maxsize=65536)
-def _number(value: int, unit: float) -> str:
-    text = f"{value / round(1 / unit):.2f}".rstrip("0").removesuffix(".")
-    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+_numbers = cache(_Numbers)  # they have no more entries than a map has places in a row
 
 
 def closed_path(tracks: Iterable[GridTrack]) -> str:
     """All rings of tracks that rest, as one path."""
-    return "".join(
-        _text(track.vertices[0, start:end], True, GRID)
-        for track in tracks
-        for start, end in zip(track.offsets[:-1], track.offsets[1:], strict=True)
-    )
+    points, lines, first = [np.empty((0, 2), dtype=np.int64)], list[Line](), 0
+    for track in tracks:
+        points.append(track.vertices[0])
+        rings = pairwise((first + track.offsets).tolist())
+        lines += [(np.arange(start, end), True) for start, end in rings]
+        first += len(track.vertices[0])
+    return _text(np.concatenate(points), lines, GRID)

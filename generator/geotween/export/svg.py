@@ -36,12 +36,12 @@ def still_svg(frames: Keyframes, title: str, step: int = 0, around: Words | None
     stage = drawing.g(class_="stage")
     shapes = next(s for span, s in frames.spans if span.rest and span.step == step)
     resting = {shape.slot: shape for shape in shapes}
-    groups = _groups(drawing, stage, [slot for slot in frames.slots() if slot in resting])
+    groups = group_elements(drawing, stage, [slot for slot in frames.slots() if slot in resting])
     for slot, group in groups.items():
         shape = resting[slot]
         group.add(path_element(slot, shape.paints[0], path_texts(shape)[0][1]))
     drawing.add(stage)
-    _scenery(drawing, frames, above=True)
+    draw_scenery(drawing, drawing, frames, above=True)
     furniture = frames.furniture
     if furniture.scale_bar is not None and around is None:
         drawing.add(draw_scale_bar(drawing, furniture.scale_bar))
@@ -70,7 +70,7 @@ def animated_svg(frames: Keyframes, title: str, description: str, around: Words)
     )
     slots = frames.slots()
     stage = drawing.g(class_="stage")
-    groups = _groups(drawing, stage, slots)
+    groups = group_elements(drawing, stage, slots)
     for group, element in {slot.group: groups[slot] for slot in slots}.items():
         animation = fade(frames, group)
         if animation is not None:
@@ -79,7 +79,7 @@ def animated_svg(frames: Keyframes, title: str, description: str, around: Words)
         for element in elements:
             groups[slot].add(element)
     drawing.add(stage)
-    _scenery(drawing, frames, above=True)
+    draw_scenery(drawing, drawing, frames, above=True)
     if frames.furniture.labels:
 
         def moved(text: BaseElement, label: Label) -> bool:
@@ -92,7 +92,7 @@ def animated_svg(frames: Keyframes, title: str, description: str, around: Words)
         element = draw_callout(drawing, callout, frames.lang)
         show(element, [seen[step] for step in callout.steps], frames)
         drawing.add(element)
-    write_words(drawing, frames, around)
+    drawing.add(write_words(drawing, frames, around))
     return str(drawing.tostring())
 
 
@@ -107,13 +107,15 @@ def _drawing(frames: Keyframes, around: Words | None) -> svgwrite.Drawing:
         size = (px(width), px(whole))
         ground = drawing.rect((0, px(-header)), size, fill=frames.background, class_="background")
         drawing.add(ground)
-    _scenery(drawing, frames, above=False)
+    draw_scenery(drawing, drawing, frames, above=False)
     if frames.furniture.graticule:
         drawing.add(draw_graticule(frames.furniture.graticule))
     return drawing
 
 
-def _scenery(drawing: svgwrite.Drawing, frames: Keyframes, *, above: bool) -> None:
+def draw_scenery(
+    drawing: svgwrite.Drawing, into: BaseElement, frames: Keyframes, *, above: bool
+) -> None:
     """The static layers under the regions, or those above them."""
     for layer in frames.scenery:
         if layer.above != above:
@@ -124,10 +126,10 @@ def _scenery(drawing: svgwrite.Drawing, frames: Keyframes, *, above: bool) -> No
         if layer.opacity < 1:
             group.attribs["opacity"] = px(layer.opacity)
         group.add(SvgPath("scenery", closed_path(layer.tracks)))
-        drawing.add(group)
+        into.add(group)
 
 
-def _groups(
+def group_elements(
     drawing: svgwrite.Drawing, stage: BaseElement, slots: Iterable[Slot]
 ) -> dict[Slot, BaseElement]:
     """A group element for each group of slots, in order; opacity sits on it."""

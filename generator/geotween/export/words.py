@@ -22,6 +22,7 @@ TITLE, LABEL, SOURCE = 18.0, 16.0, 11.0  # px, the sizes of the words above and 
 BOLD = 1.1  # the width of bold letters to that of others
 ENTRY = 12.0  # px, the size of the legend's words
 SWATCH, BESIDE, BETWEEN = 12.0, 6.0, 18.0  # px: a colour's square, the way to its words, and on
+NO_STEP = -1
 ROW = 20.0  # px, the height of a row of the legend, and of the scale bar
 
 
@@ -79,30 +80,40 @@ def _flowed(entries: tuple[Entry, ...], room: float) -> tuple[tuple[Entry, float
     return tuple(found)
 
 
-def write_words(drawing: svgwrite.Drawing, frames: Keyframes, around: Words) -> None:
-    """Title and step label above the map, legend, scale bar and source below it."""
-    ink = _ink(frames.background)
+def write_words(
+    drawing: svgwrite.Drawing, frames: Keyframes, around: Words, only: int | None = None
+) -> BaseElement:
+    """Title and step label above the map, legend, scale bar and source below it.
+
+    Step labels come and go as the map plays, or there is that of one step only, or of none.
+    """
+    ink = ink_on(frames.background)
     way = direction(frames.lang)
     line_start = MARGIN if way == "ltr" else frames.page.width - MARGIN
     group = drawing.g(class_="words", fill=ink)
     group.attribs |= {"font-family": FONT, "direction": way}
     top = -around.header + MARGIN / 2 + TITLE * (1 - LEADING)
+    if only == NO_STEP:
+        top += LABEL * LEADING
     for line in around.title:
         top += TITLE * LEADING
         group.add(_text(drawing, line, line_start, top, TITLE, weight="700"))
     room = frames.page.width - 2 * MARGIN
-    for label, times in step_times(frames):
+    for number, (label, times) in enumerate(step_times(frames)):
+        if only not in (None, number):
+            continue
         size = max(SOURCE / 2, min(LABEL, room / (LETTER * max(len(label), 1))))
         text = _text(drawing, label, line_start, -MARGIN / 2 - LABEL * (LEADING - 1), size)
         text.attribs["class"] = "step"
-        show(text, [times], frames)
+        if only is None:
+            show(text, [times], frames)
         group.add(text)
     _write_legend(drawing, group, frames, around, ink)
     top = frames.page.height + around.key
     for line in around.source:
         top += SOURCE * LEADING
         group.add(_text(drawing, line, line_start, top, SOURCE))
-    drawing.add(group)
+    return group
 
 
 def _write_legend(
@@ -155,7 +166,7 @@ def _text(
     return text
 
 
-def _ink(background: str) -> str:
+def ink_on(background: str) -> str:
     """Dark words on a light background, light ones on a dark one."""
     if background == "none":
         return "#222222"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geotween.data.polygons import PolygonSet
+from geotween.data.polygons import Identity, Key, PolygonSet
 from geotween.motion.looks import Objects, polygons_at, rebuilt
 from geotween.motion.rings import next_vertex
 from geotween.motion.tracks import Track
@@ -27,13 +27,18 @@ def bared(
     is measured, at a few moments. Features without a key count as one. For tracks that last from
     0 to 1. Cost: n log n.
     """
-    names = dict.fromkeys(i.key if i.keyed else None for i in origin.identities)
+    of_tracks = _named([track.identity for track in tracks])
+    names, others = _named(origin.identities), _named(target.identities)
+    shared = [name for name in names if name in others and name in of_tracks]
+    starts, ends = (
+        np.array([shapely.union_all(end.polygons[of[name]]) for name in shared], dtype=object)
+        for end, of in ((origin, names), (target, others))
+    )
+    inners = shapely.buffer(shapely.intersection(starts, ends), -tolerance)
     worst = 0.0
-    for name in names:
-        mine = [t for t in tracks if (t.key if t.identity.keyed else None) == name]
-        common = shapely.intersection(*(_area(end, name) for end in (origin, target)))
-        inner = shapely.buffer(common, -tolerance)
-        if not mine or inner.is_empty:
+    for name, inner in zip(shared, inners, strict=True):
+        mine = [tracks[k] for k in of_tracks[name]]
+        if inner.is_empty:
             continue
         shapely.prepare(inner)
         if shapely.intersects(inner, _hulls(mine)).any():
@@ -41,9 +46,12 @@ def bared(
     return worst
 
 
-def _area(polygons: PolygonSet, name: object) -> Any:
-    named = [(i.key if i.keyed else None) == name for i in polygons.identities]
-    return shapely.union_all(polygons.polygons[np.array(named, dtype=bool)])
+def _named(identities: Sequence[Identity]) -> dict[Key | None, list[int]]:
+    """The places of those of each key, in order; those without one together."""
+    found: dict[Key | None, list[int]] = {}
+    for place, identity in enumerate(identities):
+        found.setdefault(identity.key if identity.keyed else None, []).append(place)
+    return found
 
 
 def _hulls(tracks: Sequence[Track]) -> Objects:

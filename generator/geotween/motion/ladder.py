@@ -79,6 +79,7 @@ def climb(
     """
     if not len(division.indices):
         return Climbed((), (), (), company.proof)
+    first, *others = ways
     of_pair = groups.of_pairs(division.indices)
     every = np.ones(groups.count, dtype=bool)
 
@@ -89,13 +90,13 @@ def climb(
         matching, along = TURNING.get(way, (way, path))
         matched = match(_part(division, pairs), matching)
         tracks, problems = interpolate(matched, layer, tolerance, along, resolution)
-        return _Moved(tracks, of_pair[pairs], moved_shares(tracks, tolerance), tuple(problems))
+        moves = moved_shares(tracks, tolerance) if others else np.zeros(len(tracks))
+        return _Moved(tracks, of_pair[pairs], moves, tuple(problems))
 
     def swept(parts: list[_Moved]) -> tuple[Proof, NDArray[np.float64]]:
         proof = sweep((*_tracks_of(parts), *company.tracks))
         return proof, _wrong(proof, parts, groups.count)
 
-    first, *others = ways
     kept = [moved(first, every)]
     if not others:
         return _climbed(kept, [first], None)

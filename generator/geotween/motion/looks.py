@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import shapely
@@ -58,10 +57,16 @@ def wrong_area(track: Track, t: float) -> BaseGeometry:
     return shapely.MultiPolygon(list(faces[(winding < 0) | (winding > 1)]))
 
 
-def overlap(one: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
-    """What two polygons cover both; invalid ones are rebuilt first."""
-    both = rebuilt(np.array([one, other], dtype=object))
-    return _area_of(shapely.intersection(both[0], both[1]))
+def overlaps(ones: Objects, others: Objects) -> Objects:
+    """The area (n,) that polygons and their counterparts cover both; invalid ones are rebuilt."""
+    common = shapely.intersection(rebuilt(ones), rebuilt(others))
+    parts, owner = shapely.get_parts(common, return_index=True)
+    parts, inner = shapely.get_parts(parts, return_index=True)
+    areas = shapely.get_type_id(parts) == shapely.GeometryType.POLYGON
+    found = np.full(len(ones), shapely.MultiPolygon(), dtype=object)
+    if areas.any():
+        shapely.multipolygons(parts[areas], indices=owner[inner[areas]], out=found)
+    return found
 
 
 def rebuilt(polygons: Objects) -> Objects:
@@ -70,11 +75,6 @@ def rebuilt(polygons: Objects) -> Objects:
     for k in np.flatnonzero(~shapely.is_valid(polygons)).tolist():
         found[k] = made_valid(polygons[k])
     return found
-
-
-def _area_of(geometry: Any) -> BaseGeometry:
-    parts = shapely.get_parts(shapely.get_parts(geometry))
-    return shapely.MultiPolygon([part for part in parts if part.geom_type == "Polygon"])
 
 
 def _winding(places: Vertices, vertices: Vertices, offsets: Offsets) -> NDArray[np.intp]:

@@ -21,6 +21,7 @@ from geotween.data.polygons import (
 )
 from geotween.data.problems import Problem
 from geotween.data.tidy.repair import repair
+from geotween.displayed import Displayed
 from geotween.motion.certify import Certificate, LayerMotion, certify
 from geotween.motion.divide import NOBODY, divide
 from geotween.motion.plan import plan_layers
@@ -48,7 +49,7 @@ class PiecePair:
 
 
 @dataclass(frozen=True, eq=False)
-class Morph:
+class Morph(Displayed):
     """The motion from one set of polygons to another, layer by layer."""
 
     layers: tuple[LayerMotion, ...]

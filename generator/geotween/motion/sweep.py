@@ -16,21 +16,22 @@ What is only measured: the areas and places of violations, by looks at a few mom
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 import shapely
-from shapely.geometry.base import BaseGeometry
+from numpy.typing import NDArray
 
 from geotween.motion.contacts import ROUNDING
 from geotween.motion.events import NEAR, Events, Pair, by_pair, events_of, within
-from geotween.motion.looks import overlap, polygons_at, rebuilt, wrong_area
+from geotween.motion.looks import overlaps, polygons_at, polygons_with, rebuilt, wrong_area
 from geotween.motion.moving import Floats
 from geotween.motion.tracks import Track
 
+Row = tuple[int, int, float, float]  # two tracks, or one twice, and an interval
 Kind = Literal["self-crossing", "self-touch", "overlap"]
 
 # Contacts no deeper than this share of the tracks' extent touch. Planning leaves some 1e-13 of it
@@ -122,11 +123,7 @@ def sweep(tracks: Sequence[Track], tolerance: float = TOUCH) -> Proof:
     scaled = [replace(track, vertices=track.vertices * scale) for track in tracks]
     found = events_of(scaled, limit * scale)
     wrong, touching, looks = _settled(scaled, found, limit * scale)
-    violations = [
-        _measured(scaled, pair, start, end, scale)
-        for pair, intervals in wrong.items()
-        for start, end in intervals.tolist()
-    ]
+    violations = _measured(scaled, _rows(wrong), scale)
     for pair, intervals in touching.items():
         known = wrong.get(pair, NONE)
         rest = [_gaps(known, span, NEAR) for span in intervals]
@@ -168,15 +165,15 @@ def _settled(
         for rows, pairs in ((wrong, bad), (touching, touches)):
             rows += [np.array([[*pair, start, end]], dtype=float) for pair in pairs]
         looks += 1
-    for pair, intervals in crossing.items():
-        gaps = _gaps(intervals, breaks)
-        looks += len(gaps)
-        wrong += _looked_at(tracks, pair, gaps, tolerance)
+    spans = _rows({pair: _gaps(intervals, breaks) for pair, intervals in crossing.items()})
     for pair, intervals in by_pair(found.doubtful).items():
         lasting = intervals[np.ptp(intervals, axis=1) > ROUNDING]
         lasting = lasting[~within(lasting.mean(axis=1), crossing.get(pair, NONE), 0)]
-        looks += len(lasting)
-        wrong += _looked_at(tracks, pair, lasting, tolerance)
+        spans += _rows({pair: lasting})
+    moments = [start + ODD * (end - start) for *_, start, end in spans]
+    chosen = _are_wrong(tracks, [(i, j) for i, j, *_ in spans], moments, tolerance)
+    wrong.append(np.array(spans, dtype=float).reshape(-1, 4)[chosen])
+    looks += len(spans)
     return by_pair(np.concatenate(wrong)), by_pair(np.concatenate(touching)), looks
 
 
@@ -187,7 +184,7 @@ def _one_look(
     polygons = polygons_at(tracks, t)
     invalid = np.flatnonzero(~shapely.is_valid(polygons))
     fresh = [(k, k) for k in invalid.tolist() if (k, k) not in known]
-    wrong = [pair for pair in fresh if _is_wrong(tracks, pair, t, tolerance)]
+    wrong = _wrong_of(tracks, fresh, t, tolerance)
     one, other = shapely.STRtree(polygons).query(polygons)
     alone = np.setdiff1d(invalid, one[one != other])
     polygons[alone] = shapely.Polygon()  # rebuilding what is beyond repair takes its time
@@ -195,38 +192,69 @@ def _one_look(
     tree = shapely.STRtree(shapely.point_on_surface(polygons))
     inside = np.sort(tree.query(polygons, predicate="contains"), axis=0)
     pairs = {(i, j) for i, j in inside.T.tolist() if i != j and (i, j) not in known}
-    wrong += [pair for pair in sorted(pairs) if _is_wrong(tracks, pair, t, tolerance)]
+    wrong += _wrong_of(tracks, sorted(pairs), t, tolerance)
     return wrong, [pair for pair in fresh if pair not in wrong]
 
 
-def _looked_at(
-    tracks: Sequence[Track], pair: Pair, intervals: Floats, tolerance: float
-) -> list[Floats]:
-    """One row for each interval in which a look finds a pair of tracks wrong."""
+def _rows(of_pairs: Mapping[Pair, Floats]) -> list[Row]:
+    """Pairs with each of their intervals."""
     return [
-        np.array([[*pair, start, end]], dtype=float)
+        (*pair, start, end)
+        for pair, intervals in of_pairs.items()
         for start, end in intervals.tolist()
-        if _is_wrong(tracks, pair, start + ODD * (end - start), tolerance)
     ]
 
 
-def _is_wrong(tracks: Sequence[Track], pair: Pair, t: float, tolerance: float) -> bool:
+def _wrong_of(
+    tracks: Sequence[Track], pairs: Sequence[Pair], t: float, tolerance: float
+) -> list[Pair]:
+    bad = _are_wrong(tracks, pairs, [t] * len(pairs), tolerance)
+    return [pair for pair, is_bad in zip(pairs, bad.tolist(), strict=True) if is_bad]
+
+
+def _are_wrong(
+    tracks: Sequence[Track], pairs: Sequence[Pair], moments: Sequence[float], tolerance: float
+) -> NDArray[np.bool_]:
     """Whether what is wrong is wider than borders that touch within the tolerance explain.
 
-    A sliver is as wide as twice its area by its length: half of that is one of its sides.
+    A sliver is as wide as twice its area by its length: half of that is one of its sides. A
+    valid polygon is not wrong itself.
     """
-    polygons = polygons_at([tracks[k] for k in pair], t)
-    if pair[0] == pair[1] and shapely.is_valid(polygons[0]):
-        return False
-    parts = shapely.get_parts(_wrong_at(tracks, pair, t))
-    return bool((shapely.area(parts) > 2 * tolerance * shapely.length(parts)).any())
+    areas = _wrong_at(tracks, pairs, moments)
+    alone = np.flatnonzero([one == other for one, other in pairs])
+    numbers = np.array([pairs[k][0] for k in alone.tolist()], dtype=np.intp)
+    drawn = _polygons(tracks, numbers, np.array(moments)[alone])
+    areas[alone[shapely.is_valid(drawn)]] = shapely.MultiPolygon()
+    parts, owner = shapely.get_parts(areas, return_index=True)
+    found = np.zeros(len(pairs), dtype=bool)
+    found[owner[shapely.area(parts) > 2 * tolerance * shapely.length(parts)]] = True
+    return found
 
 
-def _wrong_at(tracks: Sequence[Track], pair: Pair, t: float) -> BaseGeometry:
-    one, other = pair
-    if one == other:
-        return wrong_area(tracks[one], t)
-    return overlap(*polygons_at([tracks[one], tracks[other]], t))
+def _wrong_at(
+    tracks: Sequence[Track], pairs: Sequence[Pair], moments: Sequence[float]
+) -> NDArray[np.object_]:
+    """What is wrong with each pair (n,) at its moment, as area."""
+    found = np.full(len(pairs), shapely.MultiPolygon(), dtype=object)
+    numbers, times = np.array(pairs, dtype=np.intp).reshape(-1, 2), np.array(moments)
+    apart = numbers[:, 0] != numbers[:, 1]
+    one, other = (_polygons(tracks, of[apart], times[apart]) for of in numbers.T)
+    found[apart] = overlaps(one, other)
+    for k in np.flatnonzero(~apart).tolist():
+        found[k] = wrong_area(tracks[numbers[k, 0]], moments[k])
+    return found
+
+
+def _polygons(
+    tracks: Sequence[Track], numbers: NDArray[np.intp], moments: Floats
+) -> NDArray[np.object_]:
+    """The polygons (n,) of tracks by number, each at a moment of its own."""
+    found = np.full(len(numbers), shapely.Polygon(), dtype=object)
+    seen = [(tracks[k], t) for k, t in zip(numbers.tolist(), moments.tolist(), strict=True)]
+    there = np.flatnonzero([track.is_there(t) for track, t in seen])
+    seen = [seen[k] for k in there.tolist()]
+    found[there] = polygons_with([track for track, _ in seen], [track.at(t) for track, t in seen])
+    return found
 
 
 def _gaps(intervals: Floats, breaks: Floats, least: float = ROUNDING) -> Floats:
@@ -240,24 +268,26 @@ def _gaps(intervals: Floats, breaks: Floats, least: float = ROUNDING) -> Floats:
     return np.array(gaps).reshape(-1, 2)
 
 
-def _measured(
-    tracks: Sequence[Track], pair: Pair, start: float, end: float, scale: float
-) -> Violation:
-    """A violation with the largest area that looks at it find."""
-    moments = [start + share * (end - start) for share in MEASURED]
-    areas = [_wrong_at(tracks, pair, t) for t in moments]
-    largest = max(range(len(areas)), key=lambda k: areas[k].area)
-    parts = shapely.get_parts(areas[largest])
-    if len(parts):
-        place = shapely.point_on_surface(parts[np.argmax(shapely.area(parts))])
-        x, y = place.x, place.y
-    else:
-        x, y = tracks[pair[0]].at(moments[largest])[0].tolist()
-    one, other = pair
-    kind: Kind = "self-crossing" if one == other else "overlap"
-    numbers = (one,) if one == other else pair
-    area = areas[largest].area / scale**2
-    return Violation(kind, numbers, start, end, area, (x / scale, y / scale))
+def _measured(tracks: Sequence[Track], rows: Sequence[Row], scale: float) -> list[Violation]:
+    """Violations, each with the largest area that looks at it find."""
+    moments = [[start + share * (end - start) for share in MEASURED] for *_, start, end in rows]
+    pairs = [(i, j) for i, j, *_ in rows for _ in MEASURED]
+    areas = _wrong_at(tracks, pairs, [t for times in moments for t in times])
+    sizes = shapely.area(areas).reshape(-1, len(MEASURED))
+    found = []
+    for k, (one, other, start, end) in enumerate(rows):
+        largest = int(sizes[k].argmax())
+        parts = shapely.get_parts(areas[len(MEASURED) * k + largest])
+        if len(parts):
+            place = shapely.point_on_surface(parts[np.argmax(shapely.area(parts))])
+            x, y = place.x, place.y
+        else:
+            x, y = tracks[one].at(moments[k][largest])[0].tolist()
+        kind: Kind = "self-crossing" if one == other else "overlap"
+        numbers = (one,) if one == other else (one, other)
+        area = float(sizes[k, largest]) / scale**2
+        found.append(Violation(kind, numbers, start, end, area, (x / scale, y / scale)))
+    return found
 
 
 def _at_key_times(tracks: Sequence[Track]) -> Floats:

@@ -94,25 +94,36 @@ def frame(tracks: Sequence[Track], t: float) -> Frame:
     ValueError
         Where t is outside [0, 1].
     """
+    found = drawn(tracks, t)
+    return Frame(
+        [polygon for polygon, _ in found],
+        [track.key for _, track in found],
+        [track.layer for _, track in found],
+    )
+
+
+def drawn(tracks: Sequence[Track], t: float) -> list[tuple[Polygon, Track]]:
+    """The regions of some tracks at t in [0, 1], as in a frame, each with the track it is of.
+
+    Raises
+    ------
+    ValueError
+        Where t is outside [0, 1].
+    """
     if not 0 <= t <= 1:
         raise ValueError(f"t runs from 0 to 1, not {t}")
     tracks = [track for track in tracks if track.is_there(t)]
     if not tracks:
-        return Frame([], [], [])
+        return []
     vertices = np.concatenate([track.at(t) for track in tracks])
     lengths = np.concatenate([np.diff(track.offsets) for track in tracks])
     offsets = np.concatenate([[0], np.cumsum(lengths)])
     owner = np.repeat(np.arange(len(tracks)), [len(track.offsets) - 1 for track in tracks])
-    drawn = [
+    return [
         (polygon, track)
         for whole, track in zip(to_polygons(vertices, offsets, owner), tracks, strict=True)
         for polygon in _parts(whole, track, t)
     ]
-    return Frame(
-        [polygon for polygon, _ in drawn],
-        [track.key for _, track in drawn],
-        [track.layer for _, track in drawn],
-    )
 
 
 def _parts(polygon: Polygon | None, track: Track, t: float) -> list[Polygon]:

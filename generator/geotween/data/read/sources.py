@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from geotween.data.read.paths import (
     several,
     with_companions,
 )
-from geotween.data.read.tables import read_table, table_features
+from geotween.data.read.tables import Table, read_table, table_features
 from geotween.data.read.texts import json_features, wkt_features
 from geotween.data.read.topojson import LayerError
 from geotween.scene.document import Document, Location, read_json, read_text
@@ -33,12 +34,21 @@ from geotween.scene.read import validated
 class SourceReader:
     """Reads what a scene names; what is wrong goes to ``faults``.
 
-    With a ``sandbox`` no file outside of that folder is read.
+    With a ``sandbox`` no file outside of that folder is read. ``tables`` are in memory, by the
+    names that the scene has for them. ``reads`` gets the files and folders that were looked at.
     """
 
-    def __init__(self, document: Document, sandbox: Path | None = None) -> None:
+    def __init__(
+        self,
+        document: Document,
+        sandbox: Path | None = None,
+        tables: Mapping[str, Table] | None = None,
+        reads: set[Path] | None = None,
+    ) -> None:
         self.document = document
         self.sandbox = sandbox
+        self.tables = tables or {}
+        self.reads = set() if reads is None else reads
         self.faults: list[Fault] = []
         self._alike: dict[object, tuple[int, Fault, list[str]]] = {}
 
@@ -85,6 +95,7 @@ class SourceReader:
         try:
             many = is_pattern(folder, name) or path.is_dir()
             paths = several(folder, name) if many else [path]
+            self.reads |= {fixed_part(folder, name)} if many else set()
             check_inside(paths, self.sandbox, "" if many else name)
         except ForbiddenError as error:
             self._report(at, error.message, error.hint)
@@ -101,6 +112,8 @@ class SourceReader:
     def read(self, path: Path, name: str, source: Source, at: Location) -> Held:
         """What one file holds, its columns and its selection as the source says."""
         faults: list[Fault] = []
+        if name not in self.tables:
+            self.reads.add(path)
         try:
             held = self._held(path, name, source, at, faults)
             held = replace(held, at=at, name=name, crs=held.crs or source.crs)
@@ -139,14 +152,12 @@ class SourceReader:
         columns = Columns(
             source.key or "key", source.class_ or "class", source.name or "name", asked
         )
+        if name in self.tables:
+            return self._of_table(self.tables[name], columns, source.name, name, at)
         if source.layer is not None and kind in (*WKT, *PARQUET):
             raise self._no_layers(name, at)
         if kind not in (*JSON, *WKT) and is_file(path):
-            try:
-                return self._table(path, source, columns)
-            except UnreadableError as error:
-                message = f"{name}: {error.message}"
-                raise SceneError([self.document.fault(at, message, error.hint)]) from None
+            return self._table(path, source, columns, name, at)
         named_by = self.document.fault(at, "")
         text = read_text(path, name, named_by=named_by, encoding=source.encoding)
         opened = Document(str(path), path, text)
@@ -163,25 +174,35 @@ class SourceReader:
             fault = self.document.fault(place, f"{name}: {error.message}", error.hint)
             raise SceneError([fault]) from None
 
-    def _table(self, path: Path, source: Source, columns: Columns) -> Held:
+    def _table(self, path: Path, source: Source, columns: Columns, name: str, at: Location) -> Held:
+        """What a file holds that a library reads, with those beside it."""
         confined = self.sandbox is not None
-        if confined:
-            try:
+        try:
+            if confined:
                 check_inside(with_companions(path), self.sandbox)
-            except ForbiddenError as error:
-                raise UnreadableError(error.message, error.hint) from None
-            except OSError as error:
-                raise UnreadableError(
-                    f"cannot be read: {error.strerror or error}".lower()
-                ) from None
-        table = read_table(path, source.layer, source.encoding, confined=confined)
-        if source.name is None:
+            table = read_table(path, source.layer, source.encoding, confined=confined)
+        except (ForbiddenError, UnreadableError) as error:
+            message = f"{name}: {error.message}"
+            raise SceneError([self.document.fault(at, message, error.hint)]) from None
+        except OSError as error:
+            reason = str(error.strerror or error).lower()
+            message = f"{name}: cannot be read: {reason}"
+            raise SceneError([self.document.fault(at, message)]) from None
+        with suppress(OSError):  # a folder that may not be listed
+            self.reads.update(with_companions(path))
+        return self._of_table(table, columns, source.name, name, at)
+
+    def _of_table(
+        self, table: Table, columns: Columns, naming: str | None, name: str, at: Location
+    ) -> Held:
+        if naming is None:
             columns = replace(columns, name=table.naming)
         features, skipped, wrong = table_features(table, columns)
         if wrong:
             more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
-            raise UnreadableError(wrong[0] + more)
-        problems = (Problem("source", "note", f"{path.name}: {text}") for text in table.warnings)
+            raise SceneError([self.document.fault(at, f"{name}: {wrong[0]}{more}")])
+        shown = Path(name).name
+        problems = (Problem("source", "note", f"{shown}: {text}") for text in table.warnings)
         return Held(features, crs=table.crs, skipped=skipped, problems=tuple(problems))
 
     def _missing(self, held: Held, named: dict[str, str | None]) -> list[Fault]:

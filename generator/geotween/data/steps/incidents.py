@@ -43,6 +43,7 @@ def hotspot_steps(reader: SourceReader, wanted: Hotspots) -> list[Member]:
     path = reader.path(wanted.file, (*PLACE, "file"))
     if path is None:
         return []
+    reader.reads.add(path)
     try:
         return _steps(read_incidents(reader, path, wanted), wanted)
     except UnusableError as error:

@@ -63,7 +63,9 @@ def at_rest(span: int) -> Callable[[BaseElement, Label], bool]:
     return placed
 
 
-def draw_callout(drawing: svgwrite.Drawing, callout: Callout, lang: str) -> BaseElement:
+def draw_callout(
+    drawing: svgwrite.Drawing, callout: Callout, lang: str, size: float = NOTE_SIZE
+) -> BaseElement:
     """Dot, line and words of an annotation."""
     group = _group(drawing, "annotation")
     group.attribs["data-steps"] = " ".join(map(str, callout.steps))
@@ -78,7 +80,7 @@ def draw_callout(drawing: svgwrite.Drawing, callout: Callout, lang: str) -> Base
     group.add(dot)
     way = direction(lang)
     text = drawing.text("")
-    text.attribs |= {"font-size": px(NOTE_SIZE), "dominant-baseline": "middle", "direction": way}
+    text.attribs |= {"font-size": px(size), "dominant-baseline": "middle", "direction": way}
     text.attribs["text-anchor"] = callout.anchor if way == "ltr" else MIRRORED[callout.anchor]
     for number, words_of_line in enumerate(callout.lines):
         words = drawing.tspan(words_of_line)

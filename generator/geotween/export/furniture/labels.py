@@ -23,7 +23,7 @@ from shapely.geometry import Polygon
 from geotween.data.polygons import Identity
 from geotween.export.bundle import Member
 from geotween.export.furniture.names import naming
-from geotween.export.furniture.room import Box, boxes, clash, fits, polygons_at, roomiest
+from geotween.export.furniture.room import Box, boxes, clash, drawn_at, fits, roomiest
 from geotween.export.furniture.text import text_width
 from geotween.export.page_grid import GridTrack
 from geotween.export.timeline import Span
@@ -248,7 +248,7 @@ def _clear(
     there = [np.tile(box, (LOOKS, 1)) for box in taken]
     labelled: list[tuple[Who, NDArray[np.float64]]] = []
     for who in order:
-        places = _along(ways[span, who], MOMENTS)
+        places = places_on(ways[span, who], MOMENTS)
         own = boxes(places, who.half)
         if any(clash(own, other).any() for other in there):
             continue
@@ -263,11 +263,11 @@ def _room(region: Moving, who: Who, way: Way) -> float:
     seen = [(t, region.at(float(t))) for t in (MOMENTS if len(way) > 1 else MOMENTS[:1])]
     there = [(t, part) for t, part in seen if part is not None]
     parts = np.array([part for _, part in there], dtype=object)
-    places = _along(way, np.array([t for t, _ in there]))
+    places = places_on(way, np.array([t for t, _ in there]))
     return float(fits(parts, places, np.tile(who.half, (len(parts), 1))).min())
 
 
-def _along(way: Way, moments: NDArray[np.float64]) -> NDArray[np.float64]:
+def places_on(way: Way, moments: NDArray[np.float64]) -> NDArray[np.float64]:
     """The places (k, 2) on a way at some moments."""
     times, x, y = np.transpose(way)
     return np.column_stack([np.interp(moments, times, axis) for axis in (x, y)])
@@ -275,13 +275,10 @@ def _along(way: Way, moments: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _largest(tracks: Sequence[GridTrack], t: float) -> Polygon | None:
     """The largest part of what some tracks cover at t, in px."""
-    drawn = []
-    for track in tracks:
-        if track.life[0] <= t <= track.life[1]:
-            drawn += polygons_at(track, t)
-    if not drawn:
+    drawn, _ = drawn_at([track for track in tracks if track.life[0] <= t <= track.life[1]], t)
+    if not len(drawn):
         return None
-    solid = shapely.make_valid(np.array(drawn, dtype=object))
+    solid = shapely.make_valid(drawn)
     whole = solid[0] if len(solid) == 1 else shapely.union_all(solid)
     parts = shapely.get_parts(shapely.get_parts(whole))
     parts = parts[shapely.get_type_id(parts) == shapely.GeometryType.POLYGON]

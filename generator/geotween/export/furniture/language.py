@@ -1,9 +1,9 @@
-"""The language of a page: the way its script runs, and the player's own words in it."""
+"""The language of a page: the way its script runs, and the words that are not the scene's."""
 
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import Literal
 
 import yaml
 
@@ -29,14 +29,14 @@ def direction(lang: str) -> str:
     return "rtl" if language in RIGHT_TO_LEFT else "ltr"
 
 
-def words_in(lang: str) -> dict[str, str]:
-    """The words of player and furniture in a language; in English where there are none in it."""
+def words_in(lang: str, of: Literal["map", "page", "player"] = "map") -> dict[str, str]:
+    """The words of map, page or player in a language; in English where there are none in it."""
     known = _words()
-    return {**known[DEFAULT], **known.get(lang.lower().split("-")[0], {})}
+    return {**known[DEFAULT][of], **known.get(lang.lower().split("-")[0], {}).get(of, {})}
 
 
 @cache
-def _words() -> dict[str, Any]:
-    text = (resource("templates") / "player_words.yaml").read_text(encoding="utf-8")
-    found: dict[str, Any] = yaml.safe_load(text)
+def _words() -> dict[str, dict[str, dict[str, str]]]:
+    text = (resource("templates") / "words.yaml").read_text(encoding="utf-8")
+    found: dict[str, dict[str, dict[str, str]]] = yaml.safe_load(text)
     return found

@@ -10,7 +10,7 @@ import svgwrite
 from numpy.typing import NDArray
 
 from geotween.export.elements import SvgPath, paint_attributes, px
-from geotween.export.furniture.room import polygons_at
+from geotween.export.furniture.room import drawn_at
 from geotween.export.keyframes import Keyframes
 from geotween.export.page_grid import GridTrack
 from geotween.export.paint import Paint
@@ -84,13 +84,13 @@ def coarse(tracks: Sequence[GridTrack], scale: float) -> list[str]:
 
     Lines that two of them share stay shared.
     """
-    polygons = [polygons_at(track, 0.0) for track in tracks]
-    counts = [len(of_track) for of_track in polygons]
-    together = np.array([p for of_track in polygons for p in of_track], dtype=object)
+    together, owner = drawn_at(tracks, 0.0)
     small = shapely.transform(together, lambda points: points * scale)
     plain = shapely.coverage_simplify(small, DETAIL) if len(small) else small
-    texts = iter(["".join(map(_ring, shapely.get_rings(polygon))) for polygon in plain])
-    return ["".join(next(texts) for _ in range(count)) for count in counts]
+    texts = [""] * len(tracks)
+    for number, polygon in zip(owner.tolist(), plain, strict=True):
+        texts[number] = "".join(map(_ring, shapely.get_rings(polygon)))
+    return texts
 
 
 def _ring(ring: shapely.LinearRing) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -41,9 +42,21 @@ def fits(polygons: NDArray[np.object_], places: Floats, halves: Floats) -> Float
 
 def polygons_at(track: GridTrack, t: float) -> list[Polygon]:
     """What a track covers at t, in px; it may touch itself, or be nothing."""
-    rings = np.zeros(len(track.offsets) - 1, dtype=np.intp)
-    found = to_polygons(track.at(t) * GRID, track.offsets, rings)
-    return [polygon for polygon in found if polygon is not None]
+    return [*drawn_at([track], t)[0]]
+
+
+def drawn_at(tracks: Sequence[GridTrack], t: float) -> tuple[NDArray[np.object_], NDArray[np.intp]]:
+    """What tracks cover at t, in px, and which of them it is (n,); some may cover nothing.
+
+    Polygons may touch themselves.
+    """
+    counts = [np.empty(0, dtype=np.intp), *(np.diff(track.offsets) for track in tracks)]
+    owner = np.repeat(np.arange(len(tracks)), [len(count) for count in counts[1:]])
+    offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.intp)
+    places = np.concatenate([np.empty((0, 2)), *(track.at(t) for track in tracks)])
+    found = to_polygons(places * GRID, offsets, owner)
+    which = np.flatnonzero([polygon is not None for polygon in found])
+    return found[which], which
 
 
 def data_at(page: Page, points: Floats) -> Floats:

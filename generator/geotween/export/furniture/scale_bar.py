@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from geotween.data.load import Scene
 from geotween.export.furniture.earth import distances
 from geotween.export.furniture.language import direction, words_in
-from geotween.export.furniture.room import Box, Floats, data_at, polygons_at
+from geotween.export.furniture.room import Box, Floats, data_at, drawn_at
 from geotween.export.furniture.text import LEADING, text_width
 from geotween.export.page_grid import GridTrack, Page
 
@@ -75,23 +76,18 @@ def scale_bar(scene: Scene, page: Page, tracks: Sequence[GridTrack]) -> ScaleBar
         bar = replace(bar, words=f"{APART[0]}{bar.words}{APART[1]}")
     width, height = bar.room
     right, bottom = page.width - CORNER - width, page.height - CORNER - height
+    drawn, _ = drawn_at(tracks, 0.0)
     corners = [(CORNER, bottom), (right, bottom), (CORNER, CORNER), (right, CORNER)]
     return min(
         (replace(bar, left=left, top=top) for left, top in corners),
-        key=lambda placed: round(_covered(placed, tracks), 3),
+        key=lambda placed: round(_covered(placed, drawn), 3),
     )
 
 
-def _covered(bar: ScaleBar, tracks: Sequence[GridTrack]) -> float:
-    """How often the bar's box, as a share of it, lies over regions."""
+def _covered(bar: ScaleBar, polygons: NDArray[np.object_]) -> float:
+    """How often the bar's box, as a share of it, lies over polygons."""
     box = shapely.box(*bar.box)
-    near = [
-        polygon
-        for track in tracks
-        for polygon in polygons_at(track, 0.0)
-        if polygon.intersects(box)
-    ]
-    parts = shapely.make_valid(np.array(near, dtype=object))
+    parts = shapely.make_valid(polygons[shapely.intersects(polygons, box)])
     return float(shapely.area(shapely.intersection(parts, box)).sum() / box.area)
 
 

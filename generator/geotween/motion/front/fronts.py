@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import shapely
 
 from geotween.data.polygons import PolygonSet
@@ -17,6 +18,8 @@ from geotween.motion.front.levels import Arrivals, levels
 from geotween.motion.looks import polygons_with
 from geotween.motion.sweep import Proof, sweep
 from geotween.motion.tracks import Track
+
+NOTHING_WRONG = Proof((), (), 0, 0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,15 +47,24 @@ def front(
 
     ``resolution`` is what nobody sees, in the data's units: half a pixel.
     """
+    if not len(origin) and not len(target):
+        return Fronts((), _never(), (), NOTHING_WRONG)
     change = changes(origin, target, annexation=annexation)
     arrivals = levels(change, arrival(change), resolution)
     tracks = tracks_of(arrivals, change.things, layer)
     found = flaws(arrivals, change)
     if not found and _simple(tracks):
-        return Fronts(tracks, arrivals, (), Proof((), (), 0, 0, 0.0))
+        return Fronts(tracks, arrivals, (), NOTHING_WRONG)
     hint = "look for slivers in the data"
     problems = tuple(Problem("front", "error", flaw, hint=hint) for flaw in found)
     return Fronts(tracks, arrivals, problems, sweep(tracks))
+
+
+def _never() -> Arrivals:
+    """The arrivals of a plane that is empty."""
+    one, two, three = (np.empty((0, n), dtype=np.intp) for n in (1, 2, 3))
+    places, times = np.empty((0, 2)), np.empty((0, 3))
+    return Arrivals(places, three, times, one[:, 0], one[:, 0], two, two, two)
 
 
 def _simple(tracks: Sequence[Track]) -> bool:

@@ -160,16 +160,24 @@ def _delays(wanted: Flags, flat: Flags, other: Ints, level: Ints) -> Ints:
         if (nearer == rank).all():
             break
         rank = nearer
+    # Each waits for those of higher rank: one after another, for what depends on nothing else.
+    distant = np.where(wanted, rank[other // 3], len(wanted) + 1)
+    roots = distant.argmin(axis=1)
     order = np.argsort(-rank[one], kind="stable")
-    for triangle in dict.fromkeys(one[order].tolist()):
-        sides = np.flatnonzero(wanted[triangle])
-        ranks = rank[other[triangle, sides] // 3]
-        root = sides[np.argmin(ranks)]
-        leaves = np.abs(delay[triangle, sides[sides != root]])
-        waits = leaves.max(initial=0) + (len(leaves) == 2 and leaves[0] == leaves[1])
-        signed = waits if level[triangle, root] == 0 else -waits
-        delay[triangle, root] = delay.reshape(-1)[other[triangle, root]] = signed
-    return delay
+    chosen = np.array(list(dict.fromkeys(one[order].tolist())), dtype=np.intp)
+    root = 3 * chosen + roots[chosen]
+    leaves = 3 * chosen[:, None] + (roots[chosen, None] + [1, 2]) % 3
+    leaves = np.where(wanted.reshape(-1)[leaves], leaves, wanted.size)
+    rising = (level.reshape(-1)[root] == 0).tolist()
+    both: list[bool] = np.all(leaves < wanted.size, axis=1).tolist()
+    waits = [0] * (wanted.size + 1)
+    mirrors = other.reshape(-1)[root].tolist()
+    found = zip(root.tolist(), mirrors, leaves.tolist(), both, rising, strict=True)
+    for mine, its, (left, right), two, up in found:
+        first, second = abs(waits[left]), abs(waits[right])
+        longest = max(first, second) + (two and first == second)
+        waits[mine] = waits[its] = longest if up else -longest
+    return np.array(waits[:-1], dtype=np.intp).reshape(wanted.shape)
 
 
 def opened(knots: Knots, times: Floats, spans: Spans) -> tuple[Knots, Floats]:

@@ -1,0 +1,1 @@
+"""Where maps live: notebooks, sites and their builders; each is a thin layer over ``export``."""
