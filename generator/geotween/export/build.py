@@ -166,7 +166,7 @@ def render_scene(
     files |= interchange_files(scene, frames, plans, wanted, between)
     pictured, met = picture_files(
         scene.name,
-        Shown(frames, model.title, source),
+        Shown(frames, model.title, source, description),
         wanted,
         pictures or Pictures(),
         shown_step(scene),
@@ -194,7 +194,9 @@ def render_scene(
 
 def shown_scene(scene: Scene, plans: Sequence[Plan | Morph]) -> Shown:
     """A planned scene as it goes into pictures."""
-    return Shown(keyframes(scene, plans), scene.model.title, _source(scene.model))
+    model = scene.model
+    description = model.description or model.subtitle
+    return Shown(keyframes(scene, plans), model.title, _source(model), description)
 
 
 def _source(model: SceneFile) -> str:

@@ -133,6 +133,11 @@ def test_a_pdf_tells_title_and_language_and_is_the_same_each_time(squares: Shown
     assert made == pdf(svg, 'A "map" #import', lang="de")
 
 
+def test_the_pdf_of_a_scene_tells_what_it_shows() -> None:
+    files, _ = picture_files("map", gallery_scene("territory"), ["pdf"], Pictures(), 0)
+    assert b"/Alt(The Crown of Poland, the Grand Duchy of Lithuania" in files["map.pdf"]
+
+
 def test_a_film_shows_the_square_where_it_is(squares: Shown, tmp_path: Path) -> None:
     meta, frames = frames_of_mp4(mp4(as_film(squares, 10, 400)), tmp_path)
     assert meta["duration"] == pytest.approx(4.0)

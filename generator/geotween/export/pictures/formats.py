@@ -121,7 +121,7 @@ def still_file(
         Where what the format needs is not installed.
     """
     if form == "pdf":
-        return pdf(svg, shown.title, lang=shown.frames.lang)
+        return pdf(svg, shown.title, shown.description, shown.frames.lang)
     if form == "png":
         return png(svg, width or round(scale * float(fromstring(svg).attrib["width"])))
     return svg.encode()

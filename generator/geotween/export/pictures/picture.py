@@ -30,11 +30,15 @@ SHAPES: dict[str, tuple[tuple[int, int], float]] = {
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """A map as it goes into pictures: its keyframes, and the words that stand around it."""
+    """A map as it goes into pictures: its keyframes, and the words that stand around it.
+
+    ``description`` is its text alternative.
+    """
 
     frames: Keyframes
     title: str
     source: str
+    description: str = ""
 
 
 def frame_svg(
