@@ -62,7 +62,7 @@ def rings(count: int, seed: int) -> list[list[list[float]]]:
     for k in range(REGIONS):
         phase = random.uniform(0, 2 * np.pi, (29, 1))
         radius = 10 * (1 + (0.08 / waves * np.cos(waves * angle + phase)).sum(axis=0))
-        shift = random.uniform(-3, 3, 2) + [30 * (k % 5), 30 * (k // 5)]
+        shift = random.uniform(-3, 3, 2) + np.array(divmod(k, 5)) * 30
         ring = np.column_stack([np.cos(angle), np.sin(angle)]) * radius[:, None] + shift
         found.append(np.round(ring, 5).tolist())
     return found

@@ -111,10 +111,10 @@ def eighths(count: int) -> tuple[np.ndarray, list[np.ndarray]]:
 
 
 def regions(repeat: int) -> list[Series]:
-    """A tiling whose cells move, by ``paper`` and by ``auto``, both certified."""
+    """A tiling of cells with keys, in which some are united, parted, annexed; certified."""
 
     def ways(count: int, found: _Found, _: ExitStack) -> dict[str, Callable[[], float]]:
-        transition = tilings.moving(0, count)
+        transition = tilings.keyed(0, count)
         return {"auto, certified": partial(_tiling, transition, found)}
 
     return _series(TILES, ways, repeat)
