@@ -78,8 +78,8 @@ scene.yaml:1:1: unknown key "titel"
 scene.yaml:2:1: unknown key "zoom"
      2 | zoom: 3
        | ^
-       = known here: credit, data, description, hotspots, lang, layout, map, motion, source, steps, \
-story, style, subtitle, timing, title, url
+       = known here: credit, data, description, hotspots, lang, layout, map, motion, source, \
+steps, story, style, subtitle, timing, title, url
 """,
             id="unknown key",
         ),
